@@ -1,0 +1,269 @@
+//! The control tick: a plain function that the board's timer interrupt calls.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use heapless::spsc::Producer;
+
+/// What the tick computes: the axis, or in a test something simpler.
+pub trait Control {
+    /// What the board saw up to this tick.
+    type Inputs;
+    /// What the board is to do until the next tick.
+    type Outputs;
+    /// What is reported of the tick.
+    type Record;
+
+    /// One tick; bounded time, no blocking.
+    fn step(&mut self, inputs: &Self::Inputs) -> (Self::Outputs, Self::Record);
+
+    /// A tick without inputs: the safe outputs.
+    fn missed(&mut self) -> (Self::Outputs, Self::Record);
+}
+
+/// The timer whose interrupt is the tick.
+pub trait TickTimer {
+    /// Timer clocks since the tick was due; starts again at the next one.
+    fn since_due(&self) -> u32;
+
+    /// Whether the next tick is due already.
+    fn is_due_again(&self) -> bool;
+}
+
+/// Counts of the tick, for a reader in another context; they saturate nowhere: 2³² ticks are 29 h at
+/// 40 kHz, then they wrap.
+#[derive(Debug, Default)]
+pub struct Counters {
+    ticks: AtomicU32,
+    late: AtomicU32,
+    overlong: AtomicU32,
+    lost_records: AtomicU32,
+    worst_start: AtomicU32,
+    worst_end: AtomicU32,
+}
+
+/// [`Counters`] at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Counts {
+    /// Ticks that ran.
+    pub ticks: u32,
+    /// Ticks whose inputs were not there.
+    pub late: u32,
+    /// Ticks that ended after their budget.
+    pub overlong: u32,
+    /// Records that found the queue full.
+    pub lost_records: u32,
+    /// Latest start of a tick after it was due, in timer clocks.
+    pub worst_start: u32,
+    /// Latest end of a tick after it was due, in timer clocks.
+    pub worst_end: u32,
+}
+
+impl Counters {
+    /// All zero.
+    pub const fn new() -> Self {
+        Self {
+            ticks: AtomicU32::new(0),
+            late: AtomicU32::new(0),
+            overlong: AtomicU32::new(0),
+            lost_records: AtomicU32::new(0),
+            worst_start: AtomicU32::new(0),
+            worst_end: AtomicU32::new(0),
+        }
+    }
+
+    /// The counts now; read while ticks run, each is right by itself.
+    pub fn read(&self) -> Counts {
+        Counts {
+            ticks: self.ticks.load(Ordering::Acquire),
+            late: self.late.load(Ordering::Relaxed),
+            overlong: self.overlong.load(Ordering::Relaxed),
+            lost_records: self.lost_records.load(Ordering::Relaxed),
+            worst_start: self.worst_start.load(Ordering::Relaxed),
+            worst_end: self.worst_end.load(Ordering::Relaxed),
+        }
+    }
+}
+
+impl Counts {
+    /// Whether every tick ran in time on inputs of its own and was reported.
+    pub fn is_clean(&self) -> bool {
+        self.late == 0 && self.overlong == 0 && self.lost_records == 0
+    }
+}
+
+/// Only the tick writes, so a load and a store are enough.
+fn add_one(counter: &AtomicU32) {
+    let value = counter.load(Ordering::Relaxed);
+    counter.store(value.wrapping_add(1), Ordering::Release);
+}
+
+fn keep_worst(counter: &AtomicU32, value: u32) {
+    if value > counter.load(Ordering::Relaxed) {
+        counter.store(value, Ordering::Relaxed);
+    }
+}
+
+/// State of the tick interrupt.
+pub struct Runtime<C: Control + 'static> {
+    control: C,
+    records: Producer<'static, C::Record>,
+    counters: &'static Counters,
+    budget: u32,
+}
+
+impl<C: Control> Runtime<C> {
+    /// `budget`: timer clocks after it was due by which a tick has to end.
+    pub fn new(
+        control: C,
+        records: Producer<'static, C::Record>,
+        counters: &'static Counters,
+        budget: u32,
+    ) -> Self {
+        Self {
+            control,
+            records,
+            counters,
+            budget,
+        }
+    }
+
+    /// One tick. `inputs` is `None` where they did not come in time: counted as late.
+    pub fn run(&mut self, timer: &impl TickTimer, inputs: Option<&C::Inputs>) -> C::Outputs {
+        keep_worst(&self.counters.worst_start, timer.since_due());
+        let (outputs, record) = if let Some(inputs) = inputs {
+            self.control.step(inputs)
+        } else {
+            add_one(&self.counters.late);
+            self.control.missed()
+        };
+        if self.records.enqueue(record).is_err() {
+            add_one(&self.counters.lost_records);
+        }
+        self.check_end(timer);
+        // Last: a reader that sees tick n counted sees all that was counted in it.
+        add_one(&self.counters.ticks);
+        outputs
+    }
+
+    fn check_end(&self, timer: &impl TickTimer) {
+        let end = timer.since_due();
+        if timer.is_due_again() || end > self.budget {
+            add_one(&self.counters.overlong);
+        }
+        keep_worst(&self.counters.worst_end, end);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use core::cell::Cell;
+    use std::boxed::Box;
+
+    use heapless::spsc::{Consumer, Queue};
+
+    use super::*;
+
+    struct Doubler;
+
+    impl Control for Doubler {
+        type Inputs = u32;
+        type Outputs = u32;
+        type Record = u32;
+
+        fn step(&mut self, inputs: &u32) -> (u32, u32) {
+            (inputs * 2, *inputs)
+        }
+
+        fn missed(&mut self) -> (u32, u32) {
+            (0, u32::MAX)
+        }
+    }
+
+    /// Reads 3 when the tick starts and `end` when it ends.
+    struct Timer {
+        end: u32,
+        again: bool,
+        started: Cell<bool>,
+    }
+
+    impl Timer {
+        fn ending_at(end: u32) -> Self {
+            Self {
+                end,
+                again: false,
+                started: Cell::new(false),
+            }
+        }
+    }
+
+    impl TickTimer for Timer {
+        fn since_due(&self) -> u32 {
+            if self.started.replace(true) {
+                self.end
+            } else {
+                3
+            }
+        }
+
+        fn is_due_again(&self) -> bool {
+            self.again
+        }
+    }
+
+    fn runtime() -> (Runtime<Doubler>, Consumer<'static, u32>, &'static Counters) {
+        let counters = Box::leak(Box::new(Counters::new()));
+        let queue: &'static mut Queue<u32, 3> = Box::leak(Box::new(Queue::new()));
+        let (producer, consumer) = queue.split();
+        let runtime = Runtime::new(Doubler, producer, counters, 50);
+        (runtime, consumer, counters)
+    }
+
+    #[test]
+    fn a_tick_in_time_is_clean_and_recorded() {
+        let (mut runtime, mut records, counters) = runtime();
+        assert_eq!(runtime.run(&Timer::ending_at(50), Some(&21)), 42);
+        assert_eq!(records.dequeue(), Some(21));
+        let counts = counters.read();
+        assert!(counts.is_clean());
+        assert_eq!(
+            (counts.ticks, counts.worst_start, counts.worst_end),
+            (1, 3, 50)
+        );
+    }
+
+    #[test]
+    fn missing_inputs_give_safe_outputs_and_count_as_late() {
+        let (mut runtime, mut records, counters) = runtime();
+        assert_eq!(runtime.run(&Timer::ending_at(5), None), 0);
+        assert_eq!(records.dequeue(), Some(u32::MAX));
+        assert_eq!(counters.read().late, 1);
+        assert!(!counters.read().is_clean());
+    }
+
+    #[test]
+    fn a_tick_over_its_budget_or_into_the_next_is_overlong() {
+        let (mut runtime, _records, counters) = runtime();
+        runtime.run(&Timer::ending_at(51), Some(&1));
+        assert_eq!(counters.read().overlong, 1);
+        let wrapped = Timer {
+            again: true,
+            ..Timer::ending_at(4)
+        };
+        runtime.run(&wrapped, Some(&1));
+        assert_eq!(counters.read().overlong, 2);
+        assert!(!counters.read().is_clean());
+    }
+
+    #[test]
+    fn a_full_queue_is_counted_and_the_tick_goes_on() {
+        let (mut runtime, _records, counters) = runtime();
+        for _ in 0..3 {
+            assert_eq!(runtime.run(&Timer::ending_at(5), Some(&1)), 2);
+        }
+        assert_eq!(counters.read().lost_records, 1);
+        assert_eq!(counters.read().ticks, 3);
+    }
+}

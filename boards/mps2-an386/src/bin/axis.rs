@@ -1,0 +1,368 @@
+//! The axis firmware with a simulated machine in place of encoder and drive.
+//!
+//! ```text
+//!           period                   priority  interrupt
+//! TIMER1    |      k'     |      k'+1    high  control tick k: takes inputs k, gives outputs k
+//! TIMER0    | k         | k+1          middle  machine step k+1: takes outputs k, gives inputs k+1
+//! DUALTIMER                                    embassy's time
+//! SPARE30                              lowest  pended by the tick: wakes the telemetry task
+//! thread                                       requests, telemetry, log; idles in WFE
+//! ```
+//!
+//! The run is the standard move there and back. At its end the digest of all inputs and outputs is
+//! logged, which is that of the host's simulation of the same run.
+//!
+//! Both timers have the same period and the tick comes [`TICK_PHASE`] of it behind the machine. Where
+//! the machine is not done by then the tick counts as late, and the run fails.
+//!
+//! Arguments: see [`leadscrew_app::options`].
+#![no_std]
+#![no_main]
+
+use board_mps2_an386::handoff::{Giver, Handoff, Taker};
+use board_mps2_an386::interrupts::{Interrupt, interrupt};
+use board_mps2_an386::isr_cell::IsrCell;
+use board_mps2_an386::timer::{TIMER0, TIMER1, Timer};
+use board_mps2_an386::{CLOCK_HZ, arguments, exit_failure, exit_success, time_driver};
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::NVIC;
+use embassy_executor::Spawner;
+use embassy_time::Instant;
+
+use embassy_time::Timer as Delay;
+use heapless::spsc::{Consumer, Producer, Queue};
+use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew::hal::Encoder;
+use leadscrew::telemetry::Record;
+use leadscrew_app::axis_control::{AxisControl, Request};
+use leadscrew_app::options::Options;
+use leadscrew_app::telemetry::{self, Plan, Ready, Sink};
+use leadscrew_app::tick::{Counters, Counts, Runtime, TickTimer};
+use leadscrew_hal_mock::machine::{Machine, MachineParams};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
+use leadscrew_hal_mock::trace::TraceDigest;
+use static_cell::{ConstStaticCell, StaticCell};
+
+/// The tick's distance behind the machine step, in 1/8 of the period.
+const TICK_PHASE: u32 = 6;
+/// A tick has to end within this part of the period, in 1/8: before the next machine step.
+const TICK_BUDGET: u32 = 1;
+/// Records that telemetry may be behind.
+const QUEUE: usize = 64;
+/// Requests that may wait.
+const REQUEST_QUEUE: usize = 4;
+
+const PRIORITY_TICK: u8 = 0x40;
+const PRIORITY_MACHINE: u8 = 0x80;
+const PRIORITY_TIME: u8 = 0xa0;
+const PRIORITY_TELEMETRY: u8 = 0xe0;
+
+static TICK: IsrCell<TickState> = IsrCell::empty();
+static MACHINE: IsrCell<MachineState> = IsrCell::empty();
+static COUNTERS: Counters = Counters::new();
+static READY: Ready = Ready::new();
+
+/// Requests that did not fit.
+static REFUSED: AtomicU32 = AtomicU32::new(0);
+
+struct TickState {
+    runtime: Runtime<AxisControl<Machine>>,
+    inputs: Taker<Machine>,
+    outputs: Giver<Outputs>,
+    ticks_left: u32,
+}
+
+struct MachineState {
+    inputs: Giver<Machine>,
+    outputs: Taker<Outputs>,
+    /// What the tick put out last; before the first tick nothing.
+    applied: Outputs,
+    digest: TraceDigest,
+}
+
+impl MachineState {
+    /// Moves the machine under the outputs of the last tick.
+    fn step(&mut self) {
+        self.account();
+        let Outputs {
+            command, enabled, ..
+        } = self.applied;
+        // Not taken: the tick did not run, and the next one finds these inputs again as one too few.
+        let _ = self.inputs.give(|machine| machine.step(command, enabled));
+    }
+
+    /// Takes the last tick into the digest, while the machine still shows what that tick saw.
+    fn account(&mut self) {
+        let Some(outputs) = self.outputs.take(|outputs| *outputs) else {
+            return;
+        };
+        self.applied = outputs;
+        let digest = &mut self.digest;
+        let _ = self.inputs.look(|machine| {
+            let inputs = Inputs {
+                capture: machine.capture(),
+                enable: outputs.enabled,
+            };
+            digest.update(&inputs, &outputs);
+        });
+    }
+}
+
+struct TickClock(&'static Timer);
+
+impl TickTimer for TickClock {
+    fn since_due(&self) -> u32 {
+        self.0.since_reload()
+    }
+
+    fn is_due_again(&self) -> bool {
+        self.0.is_due()
+    }
+}
+
+/// The machine, one step a period.
+#[interrupt]
+fn TIMER0() {
+    TIMER0.acknowledge();
+    MACHINE.with(MachineState::step);
+}
+
+/// The control tick.
+#[interrupt]
+fn TIMER1() {
+    TIMER1.acknowledge();
+    TICK.with(|state| {
+        if state.ticks_left == 0 {
+            // Pended already when the timers were stopped.
+            return;
+        }
+        let runtime = &mut state.runtime;
+        let clock = TickClock(&TIMER1);
+        let outputs = state
+            .inputs
+            .take(|inputs| runtime.run(&clock, Some(inputs)))
+            .unwrap_or_else(|| runtime.run(&clock, None));
+        // Not taken: the machine did not run; it has no inputs for the next tick either, which counts.
+        let _ = state.outputs.give(|place| *place = outputs);
+        state.ticks_left -= 1;
+        if state.ticks_left == 0 {
+            TIMER0.stop();
+            TIMER1.stop();
+        }
+    });
+    NVIC::pend(Interrupt::SPARE30);
+}
+
+/// The tick wakes nobody itself.
+#[interrupt]
+fn SPARE30() {
+    READY.signal(());
+}
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let options = options();
+    let scenario = match Scenario::new(&options) {
+        Ok(scenario) => scenario,
+        Err(_) => {
+            defmt::error!("the scenario does not fit the machine");
+            exit_failure()
+        }
+    };
+    let period = (CLOCK_HZ + options.tick_hz / 2) / options.tick_hz;
+    let ticks = options.ticks.unwrap_or(scenario.script.ticks);
+    time_driver::start();
+    let script = scenario.script.clone();
+    let (requests, records) = wire(scenario, period, ticks);
+    unmask_interrupts();
+    let plan = Plan {
+        ticks,
+        report_every: options.tick_hz,
+    };
+    spawner.spawn(report(records, plan).expect("spawned once"));
+    spawner.spawn(operate(requests, script).expect("spawned once"));
+    defmt::info!("axis: {=u32} ticks at {=u32} Hz", ticks, options.tick_hz);
+    TIMER0.start(period, period);
+    TIMER1.start(period, period + period / 8 * TICK_PHASE);
+}
+
+/// Words of the command line.
+fn options() -> Options {
+    let mut options = Options::default();
+    let result = arguments(|word| {
+        options
+            .apply(word)
+            .inspect_err(|error| defmt::error!("argument {=str}: {}", word, error))
+    });
+    if result.is_err() {
+        exit_failure();
+    }
+    options
+}
+
+/// What the run is made of.
+struct Scenario {
+    machine: Machine,
+    axis: Axis,
+    script: Script,
+}
+
+impl Scenario {
+    /// The standard move on the reference machine, seed 1, exponential smoothing in the loop.
+    fn new(options: &Options) -> Result<Self, ScenarioError> {
+        let tick_hz = f64::from(options.tick_hz);
+        let scenario = MoveAndBack::standard(tick_hz);
+        let machine = MachineParams::z_16k20f3();
+        let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
+        let params = scenario.axis_params(&machine, estimator)?;
+        let config = params.validate()?;
+        Ok(Self {
+            script: Script::new(&scenario, params.motion.counts_per_mm, &config)?,
+            machine: Machine::new(&machine, tick_hz, SEED)?,
+            axis: Axis::new(config),
+        })
+    }
+}
+
+const SEED: u64 = 1;
+
+/// Hands every interrupt its state; gives the ends of the queues that thread mode holds.
+fn wire(
+    scenario: Scenario,
+    period: u32,
+    ticks: u32,
+) -> (Producer<'static, Request>, Consumer<'static, Record>) {
+    static INPUTS: StaticCell<Handoff<Machine>> = StaticCell::new();
+    static OUTPUTS: StaticCell<Handoff<Outputs>> = StaticCell::new();
+    static RECORDS: StaticCell<Queue<Record, QUEUE>> = StaticCell::new();
+    static REQUESTS: ConstStaticCell<Queue<Request, REQUEST_QUEUE>> =
+        ConstStaticCell::new(Queue::new());
+
+    let (to_tick, from_machine) = INPUTS.init(Handoff::new(scenario.machine)).split();
+    let (to_machine, from_tick) = OUTPUTS.init(Handoff::new(Outputs::default())).split();
+    let (producer, consumer) = RECORDS.init(Queue::new()).split();
+    let (ask, asked) = REQUESTS.take().split();
+    let control = AxisControl::new(scenario.axis, asked, &REFUSED);
+    let tick = TickState {
+        runtime: Runtime::new(control, producer, &COUNTERS, period / 8 * TICK_BUDGET),
+        inputs: from_machine,
+        outputs: to_machine,
+        ticks_left: ticks,
+    };
+    let machine = MachineState {
+        inputs: to_tick,
+        outputs: from_tick,
+        applied: Outputs::default(),
+        digest: TraceDigest::new(),
+    };
+    assert!(
+        TICK.put(tick) && MACHINE.put(machine),
+        "interrupts are masked"
+    );
+    (ask, consumer)
+}
+
+/// The person at the panel: enables the axis and hands over each move once the one before has begun.
+#[embassy_executor::task]
+async fn operate(mut requests: Producer<'static, Request>, script: Script) {
+    let mut ask = |request| {
+        if requests.enqueue(request).is_err() {
+            REFUSED.store(REFUSED.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        }
+    };
+    ask(Request::Enable(true));
+    let mut begun = 1;
+    for next in script.moves {
+        while COUNTERS.read().ticks < begun {
+            Delay::after_millis(1).await;
+        }
+        ask(Request::Move {
+            profile: next.profile,
+            start: next.start,
+        });
+        // Not before the last setpoint of this one may another one wait.
+        begun = next.start + next.profile.ticks();
+    }
+}
+
+fn unmask_interrupts() {
+    let mut core = cortex_m::Peripherals::take().expect("main runs once");
+    let lines = [
+        (Interrupt::TIMER1, PRIORITY_TICK),
+        (Interrupt::TIMER0, PRIORITY_MACHINE),
+        (Interrupt::DUALTIMER, PRIORITY_TIME),
+        (Interrupt::SPARE30, PRIORITY_TELEMETRY),
+    ];
+    for (line, priority) in lines {
+        // SAFETY: all critical sections of the program mask by PRIMASK, so they hold at any priority;
+        // the handlers share only what `Handoff`, `IsrCell`, atomics and the queue's two ends protect.
+        unsafe {
+            core.NVIC.set_priority(line, priority);
+            NVIC::unmask(line);
+        }
+    }
+}
+
+#[embassy_executor::task]
+async fn report(mut records: Consumer<'static, Record>, plan: Plan) {
+    let mut trace = Trace::default();
+    let counts = telemetry::run(&mut trace, &mut records, &READY, &COUNTERS, plan).await;
+    defmt::info!(
+        "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
+        counts.ticks,
+        counts.late,
+        counts.overlong,
+        counts.lost_records
+    );
+    defmt::info!(
+        "worst start {=u32} clocks, worst end {=u32} clocks after due",
+        counts.worst_start,
+        counts.worst_end
+    );
+    let digest = MACHINE.with(|state| {
+        state.account();
+        state.digest.value()
+    });
+    defmt::info!(
+        "digest {=u64:016x} of {=u32} ticks",
+        digest.unwrap_or(0),
+        trace.records
+    );
+    let refused = REFUSED.load(Ordering::Relaxed);
+    if counts.is_clean() && trace.records == plan.ticks && refused == 0 {
+        exit_success();
+    }
+    defmt::error!(
+        "failed: ticks were late, overlong or not recorded, or {=u32} requests refused",
+        refused
+    );
+    exit_failure()
+}
+
+/// Follows the records.
+#[derive(Default)]
+struct Trace {
+    records: u32,
+    last: Record,
+}
+
+impl Sink for Trace {
+    type Record = Record;
+
+    fn record(&mut self, record: &Record) {
+        self.records += 1;
+        self.last = *record;
+    }
+
+    fn progress(&mut self, counts: &Counts) {
+        defmt::info!(
+            "tick {=u32} at {=u64} us: count {=i32}, velocity {=i32} d/s, late {=u32}",
+            counts.ticks,
+            Instant::now().as_micros(),
+            self.last.count.cast_signed(),
+            self.last.velocity >> 10,
+            counts.late
+        );
+    }
+}

@@ -1,0 +1,128 @@
+//! The stages of an axis one by one, composed as in `Axis::step`, each counted.
+
+use board_mps2_an386::instructions::Counter;
+use leadscrew::capture::Unwrapper;
+use leadscrew::controller::Controller;
+use leadscrew::estimator::{Estimator, EstimatorConfig};
+use leadscrew::hal::Capture;
+use leadscrew::output::Output;
+use leadscrew::params::AxisConfig;
+use leadscrew::setpoint::trajectory::Trajectory;
+use leadscrew_hal_mock::scenario::TimedMove;
+
+use crate::samples::Samples;
+
+/// The estimators of the papers, by name.
+pub const ESTIMATORS: [&str; 4] = ["difference", "exponential", "simple", "gaussian"];
+
+/// One stage after the other.
+pub struct Staged {
+    unwrapper: Unwrapper,
+    estimators: [Estimator; 4],
+    trajectory: Trajectory,
+    controller: Controller,
+    output: Output,
+}
+
+/// Counts of the stages.
+pub struct StageSamples {
+    unwrap: Samples,
+    estimators: [Samples; 4],
+    trajectory: Samples,
+    controller: Samples,
+    output: Samples,
+}
+
+impl StageSamples {
+    pub const fn new() -> Self {
+        Self {
+            unwrap: Samples::of("unwrap"),
+            estimators: [
+                Samples::of(ESTIMATORS[0]),
+                Samples::of(ESTIMATORS[1]),
+                Samples::of(ESTIMATORS[2]),
+                Samples::of(ESTIMATORS[3]),
+            ],
+            trajectory: Samples::of("trajectory"),
+            controller: Samples::of("controller"),
+            output: Samples::of("output"),
+        }
+    }
+
+    pub fn log(&mut self) {
+        self.unwrap.log("capture");
+        for samples in &mut self.estimators {
+            samples.log("estimator");
+        }
+        self.trajectory.log("setpoint");
+        self.controller.log("controller");
+        self.output.log("output");
+    }
+}
+
+impl Staged {
+    /// The stages of an axis with `config`; the estimator in its loop is number `in_loop`.
+    pub fn new(config: &AxisConfig, estimators: [EstimatorConfig; 4]) -> Self {
+        Self {
+            unwrapper: Unwrapper::new(),
+            estimators: estimators.map(Estimator::new),
+            trajectory: Trajectory::new(),
+            controller: Controller::new(config.controller),
+            output: Output::new(config.output),
+        }
+    }
+
+    pub fn queue(&mut self, next: &TimedMove, now: u32) -> bool {
+        self.trajectory
+            .queue(&next.profile, next.start, now)
+            .is_ok()
+    }
+
+    /// One tick on the capture; counts go to `samples` if there are any.
+    pub fn step(
+        &mut self,
+        tick: u32,
+        capture: &Capture<'_>,
+        counter: &mut Counter,
+        samples: Option<&mut StageSamples>,
+    ) {
+        let mut observation = None;
+        let unwrap = counter.count(|| observation = Some(self.unwrapper.unwrap(capture)));
+        let Some(observation) = observation else {
+            return;
+        };
+        let mut estimates = [None; 4];
+        let mut estimator_counts = [0; 4];
+        for ((estimator, estimate), count) in self
+            .estimators
+            .iter_mut()
+            .zip(&mut estimates)
+            .zip(&mut estimator_counts)
+        {
+            *count = counter.count(|| *estimate = Some(estimator.update(&observation)));
+        }
+        let [_, Some(estimate), ..] = estimates else {
+            return;
+        };
+        let mut setpoint = None;
+        let trajectory = counter.count(|| setpoint = Some(self.trajectory.step(tick)));
+        let Some(setpoint) = setpoint else { return };
+        let active = self.output.active_limits();
+        let position = observation.position();
+        let mut demand = None;
+        let control = counter
+            .count(|| demand = Some(self.controller.step(&setpoint, position, &estimate, active)));
+        let Some(demand) = demand else { return };
+        let output = counter.count(|| self.output.step(demand.command));
+
+        if let Some(samples) = samples {
+            samples.unwrap.push(unwrap);
+            for (samples, count) in samples.estimators.iter_mut().zip(estimator_counts) {
+                samples.push(count);
+            }
+            samples.trajectory.push(trajectory);
+            samples.controller.push(control);
+            samples.output.push(output);
+        }
+    }
+}

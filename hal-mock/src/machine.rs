@@ -1,0 +1,181 @@
+//! The machine "16K20F3 Z": drive, carriage and encoder together.
+
+use leadscrew::hal::{self, Capture};
+use leadscrew::parameter_table::ParameterTable;
+use leadscrew::units::{AxisScale, Command, RangeError};
+
+use crate::arc::{Arc, State};
+use crate::carriage::{Carriage, CarriageParams};
+use crate::drive::{Drive, DriveParams};
+use crate::encoder::{Encoder, EncoderModel};
+use crate::play::Play;
+use crate::tachogenerator::Tachogenerator;
+
+/// Where the shaft stands at first: in the middle of the discrete 0.
+pub const START_D: f64 = 0.5;
+
+leadscrew::parameter_table! {
+    /// How the encoder is coupled.
+    pub struct MountParams {
+        /// Encoder resolution
+        counts_per_mm: 1000.0, "d/mm", 0.001..=1e7;
+        /// Play in the encoder's coupling
+        coupling_play_mm: 0.0, "mm", 0.0..=1.0;
+        /// 0: encoder on the screw; 1: linear scale on the carriage, which puts its backlash into the loop
+        linear_scale: 0.0, "0 or 1", 0.0..=1.0;
+    }
+}
+
+/// Everything about a machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MachineParams {
+    /// The drive.
+    pub drive: DriveParams,
+    /// The carriage.
+    pub carriage: CarriageParams,
+    /// The encoder's coupling.
+    pub mount: MountParams,
+    /// The encoder.
+    pub encoder: EncoderModel,
+}
+
+impl MachineParams {
+    /// The longitudinal axis of the 16K20F3 lathe with all its imperfections and the encoder "real".
+    #[must_use]
+    pub fn z_16k20f3() -> Self {
+        Self::default()
+    }
+
+    /// The same axis for checking mathematics: no offset, delay, dead time, ripple, friction, compliance
+    /// or play, and the encoder "ideal".
+    #[must_use]
+    pub fn bare(self) -> Self {
+        Self {
+            drive: self.drive.bare(),
+            carriage: self.carriage.bare(),
+            mount: MountParams {
+                coupling_play_mm: 0.0,
+                ..self.mount
+            },
+            encoder: EncoderModel::ideal(),
+        }
+    }
+}
+
+/// What the machine really does at the end of a tick, in d and ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// The encoder's shaft at the sampling instant.
+    pub shaft: State,
+    /// The carriage at the end of the tick.
+    pub carriage: State,
+}
+
+/// The machine.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    drive: Drive,
+    carriage: Carriage,
+    coupling: Coupling,
+    encoder: Encoder,
+    tachogenerator: Tachogenerator,
+    /// Motion of the drive's shaft in the last tick, and the tachogenerator's error in it.
+    turned: (Arc, f64),
+    /// Motion of the encoder in the last tick.
+    seen: Arc,
+}
+
+impl Machine {
+    /// A machine at rest at [`START_D`], with the errors that `seed` draws, for a tick rate of `tick_hz`.
+    ///
+    /// # Errors
+    /// A parameter out of range.
+    pub fn new(params: &MachineParams, tick_hz: f64, seed: u64) -> Result<Self, RangeError> {
+        params.mount.check()?;
+        let scale = AxisScale::new(params.mount.counts_per_mm, tick_hz)?;
+        Ok(Self {
+            drive: Drive::new(&params.drive, scale, START_D)?,
+            carriage: Carriage::new(&params.carriage, scale, START_D)?,
+            coupling: Coupling::new(&params.mount, scale),
+            encoder: Encoder::new(&params.encoder, tick_hz, START_D, seed)?,
+            tachogenerator: Tachogenerator::new(scale),
+            turned: (Arc::default(), 0.0),
+            seen: Arc::default(),
+        })
+    }
+
+    /// Moves through one tick under the command that was put out before it.
+    pub fn step(&mut self, command: Command, enable: bool) {
+        let ripple = self.drive.ripple();
+        let shaft = self.drive.step(command, enable);
+        self.carriage.step(shaft.end());
+        self.turned = (shaft, ripple);
+        self.seen = match &mut self.coupling {
+            Coupling::Rigid => shaft,
+            Coupling::Play(play, end) => {
+                let (position, driven) = play.follow(shaft.end().position);
+                let velocity = if driven { shaft.end().velocity } else { 0.0 };
+                joined(end, (position, velocity))
+            }
+            Coupling::Scale(end) => {
+                let carriage = self.carriage.state();
+                joined(end, (carriage.position, carriage.velocity))
+            }
+        };
+        self.encoder.advance(&self.seen);
+    }
+
+    /// What really happened.
+    #[must_use]
+    pub fn truth(&self) -> Truth {
+        let shaft = self.seen.at(1.0 - self.encoder.sampling_advance());
+        Truth {
+            shaft,
+            carriage: self.carriage.state(),
+        }
+    }
+
+    /// Mean reading of the tachogenerator over the last tick, d/tick. Call it once a tick, or never: the
+    /// oscilloscope costs nothing while nobody looks.
+    pub fn read_tachogenerator(&mut self) -> f64 {
+        let (shaft, ripple) = self.turned;
+        self.tachogenerator.step(&shaft, ripple);
+        self.tachogenerator.velocity()
+    }
+}
+
+impl hal::Encoder for Machine {
+    fn capture(&self) -> Capture<'_> {
+        self.encoder.capture()
+    }
+}
+
+/// What turns the encoder.
+#[derive(Clone, Debug)]
+enum Coupling {
+    Rigid,
+    /// Through play; with the position and velocity reached last.
+    Play(Play, (f64, f64)),
+    /// It sits on the carriage.
+    Scale((f64, f64)),
+}
+
+impl Coupling {
+    fn new(params: &MountParams, scale: AxisScale) -> Self {
+        let play = scale.counts_from_mm(params.coupling_play_mm);
+        if params.linear_scale >= 0.5 {
+            Self::Scale((START_D, 0.0))
+        } else if play > 0.0 {
+            Self::Play(Play::new(play, START_D), (START_D, 0.0))
+        } else {
+            Self::Rigid
+        }
+    }
+}
+
+/// The arc from where the last one ended to a new end.
+fn joined(end: &mut (f64, f64), to: (f64, f64)) -> Arc {
+    let arc = Arc::joining(*end, to);
+    *end = to;
+    arc
+}

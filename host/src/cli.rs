@@ -1,0 +1,122 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Motion control of one machine-tool axis: simulate it, replay captures of its encoder.
+///
+/// Without a subcommand: a demonstration on the simulated longitudinal axis of a 16K20F3 lathe.
+#[derive(Debug, Parser)]
+#[command(name = "leadscrew", version, about, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Moves a simulated axis there and back and reports how well it went
+    Sim(SimArgs),
+    /// Decodes a logic-analyser capture of an encoder and runs the estimators on it
+    Replay(ReplayArgs),
+}
+
+/// Where results go.
+#[derive(Debug, Args)]
+pub struct OutputArgs {
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Write one row a tick to FILE
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Draw velocity and acceleration to FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `sim`.
+#[derive(Debug, Args)]
+pub struct SimArgs {
+    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
+    pub machine: String,
+    /// Distance of the move, mm
+    #[arg(
+        long,
+        value_name = "X",
+        default_value_t = 300.0,
+        allow_negative_numbers = true
+    )]
+    pub move_mm: f64,
+    /// Feed of the move, mm/min
+    #[arg(
+        long,
+        value_name = "MM_PER_MIN",
+        default_value_t = 9000.0,
+        allow_negative_numbers = true
+    )]
+    pub feed: f64,
+    /// Control rate, Hz (100 to 40000)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1000.0,
+        allow_negative_numbers = true
+    )]
+    pub tick_hz: f64,
+    /// Estimator in the loop, in the CSV and in the plot
+    #[arg(long, value_name = "NAME", default_value = "exponential")]
+    pub estimator: String,
+    /// Seed of everything random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Print the machine as TOML, with units and comments, and stop
+    #[arg(long)]
+    pub dump_machine: bool,
+    /// Where results go
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Arguments of `replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// The capture: VCD, sigrok CSV or Saleae Logic 2 CSV
+    pub file: PathBuf,
+    /// Control rate at which the core samples the capture, Hz (100 to 40000)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1000.0,
+        allow_negative_numbers = true
+    )]
+    pub tick_hz: f64,
+    /// Channel A: its exact name, else its index from 0 [default: the first one-bit signal]
+    #[arg(long, value_name = "CH")]
+    pub a: Option<String>,
+    /// Channel B [default: the second one-bit signal]
+    #[arg(long, value_name = "CH")]
+    pub b: Option<String>,
+    /// Channel Z (index) [default: none]
+    #[arg(long, value_name = "CH")]
+    pub z: Option<String>,
+    /// Sampling rate of a sigrok CSV that does not state it, Hz
+    #[arg(long, value_name = "HZ")]
+    pub samplerate: Option<u64>,
+    /// Only this estimator [default: all in the report, exponential in the CSV]
+    #[arg(long, value_name = "NAME")]
+    pub estimator: Option<String>,
+    /// Start of the span over which acceleration is fitted, s [default: after warm-up]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub from_s: Option<f64>,
+    /// End of that span, s [default: the end]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub to_s: Option<f64>,
+    /// Where results go
+    #[command(flatten)]
+    pub output: OutputArgs,
+}

@@ -1,0 +1,194 @@
+//! The demonstration: what each estimator of the papers makes of the same encoder.
+
+use std::path::Path;
+
+use comfy_table::{CellAlignment, Table, presets};
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_hal_mock::scenario::MoveAndBack;
+
+use super::print;
+use crate::error::CommandError;
+use crate::figures::{self, acceleration_points, estimator_series, panel, points, velocity_points};
+use crate::plot::{Colour, Figure, Series};
+use crate::simulation::{Run, RunSpec, all_estimators};
+use crate::statistics::Spread;
+
+const TICK_HZ: f64 = 1000.0;
+const SEED: u64 = 1;
+/// Where the plots go.
+const FOLDER: &str = "target/leadscrew";
+
+/// Runs the demonstration.
+///
+/// # Errors
+/// A plot that cannot be written.
+pub fn run() -> Result<(), CommandError> {
+    let spec = |estimator| RunSpec {
+        machine: MachineParams::z_16k20f3(),
+        scenario: MoveAndBack::standard(TICK_HZ),
+        estimator,
+        seed: SEED,
+    };
+    let mut runs = Vec::new();
+    for config in all_estimators() {
+        runs.push((config.name(), spec(config).run()?));
+    }
+    // The data that all estimators are judged on: the run with exponential smoothing in the loop.
+    let Some(judged) = runs
+        .iter()
+        .find(|(name, _)| *name == JUDGED)
+        .map(|(_, run)| run)
+    else {
+        return Err(CommandError::Data(format!(
+            "the estimator {JUDGED} is gone"
+        )));
+    };
+    let errors: Vec<_> = runs
+        .iter()
+        .map(|(name, run)| (*name, run.following_error()))
+        .collect();
+
+    print(&format!(
+        "{INTRODUCTION}{}\n{EXPLANATION}",
+        table(judged, &errors)
+    ))?;
+    for (name, figure) in [
+        ("estimates", estimates_figure(judged)),
+        ("following-error", error_figure(&runs)),
+    ] {
+        for extension in ["svg", "png"] {
+            save(&figure, &format!("{FOLDER}/{name}.{extension}"))?;
+        }
+    }
+    Ok(())
+}
+
+const JUDGED: &str = "exponential";
+
+const INTRODUCTION: &str = "\
+leadscrew: 16K20F3 lathe, Z axis (simulated), 300 mm at 9000 mm/min and back, tick 1 ms
+encoder 10 000 d/rev with the errors of a real disc, full drive model, seed 1
+
+";
+
+const EXPLANATION: &str = "
+sigma: rms error against the true motion at the instant that the estimate is for, while moving
+cut:   how much smaller that is than by plain differences of the count
+tacho: rms difference from a tachogenerator read in steps of 0.233 d/tick
+following error: with that estimator in the loop; the loop is tuned alike for all
+";
+
+fn table(run: &Run, errors: &[(&str, Spread)]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY).set_header([
+        "estimator",
+        "lag x/v/a\nticks",
+        "sigma v\nd/tick",
+        "sigma a\nd/tick²",
+        "cut of\nsigma a",
+        "tacho\nd/tick",
+        "cut of\ntacho",
+        "following error\npeak, d",
+        "following error\nrms, d",
+    ]);
+    let raw = run
+        .listeners
+        .first()
+        .map(|listener| run.accuracy(listener))
+        .unwrap_or_default();
+    for listener in &run.listeners {
+        let accuracy = run.accuracy(listener);
+        let lags = listener.config.lags();
+        let error = errors
+            .iter()
+            .find(|(name, _)| *name == listener.config.name())
+            .map(|(_, error)| *error);
+        let error = error.unwrap_or_default();
+        table.add_row([
+            listener.config.name().to_owned(),
+            format!(
+                "{:.2} {:.2} {:.2}",
+                lags.position, lags.velocity, lags.acceleration
+            ),
+            format!("{:.4}", accuracy.velocity.rms()),
+            format!("{:.4}", accuracy.acceleration.rms()),
+            format!(
+                "{:.1}",
+                raw.acceleration.rms() / accuracy.acceleration.rms()
+            ),
+            format!("{:.4}", accuracy.against_tachogenerator.rms()),
+            format!(
+                "{:.1}",
+                raw.against_tachogenerator.rms() / accuracy.against_tachogenerator.rms()
+            ),
+            format!("{:.1}", error.peak()),
+            format!("{:.2}", error.rms()),
+        ]);
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// Velocity, its error and acceleration by each method, and the truth.
+fn estimates_figure(run: &Run) -> Figure {
+    let truth = run.true_states();
+    let (mut errors, mut accelerations) = (Vec::new(), Vec::new());
+    for (index, listener) in run.listeners.iter().enumerate() {
+        let name = listener.config.name();
+        errors.push(estimator_series(index, name, run.velocity_errors(listener)));
+        accelerations.push(estimator_series(
+            index,
+            name,
+            acceleration_points(&listener.estimates, run.tick_hz),
+        ));
+    }
+    let true_velocity = points(&truth, run.tick_hz, |_| 0.0, |state| state.velocity);
+    let true_acceleration = points(&truth, run.tick_hz, |_| 0.0, |state| state.acceleration);
+    accelerations.push(Series::dashed("true", true_acceleration, Colour::Black));
+    let mut velocities = Vec::new();
+    if let Some(listener) = run
+        .listeners
+        .iter()
+        .find(|listener| listener.config.name() == JUDGED)
+    {
+        velocities.push(Series::line(
+            JUDGED,
+            velocity_points(&listener.estimates, run.tick_hz),
+            Colour::Blue,
+        ));
+    }
+    velocities.push(Series::dashed("true", true_velocity, Colour::Black));
+    Figure::new(
+        "16K20F3 Z: 300 mm at 9 000 mm/min and back, each estimate at the instant it is for",
+        vec![
+            panel(figures::VELOCITY, velocities),
+            panel("velocity error, d/tick", errors),
+            panel(figures::ACCELERATION, accelerations).with_y_limits(-2.2, 2.2),
+        ],
+    )
+}
+
+/// Following error with each estimator in the loop.
+fn error_figure(runs: &[(&str, Run)]) -> Figure {
+    let series = runs.iter().enumerate().map(|(index, (name, run))| {
+        let error = points(
+            &run.ticks,
+            run.tick_hz,
+            |_| 0.0,
+            |tick| tick.outputs.following_error.to_num(),
+        );
+        estimator_series(index, name, error)
+    });
+    Figure::new(
+        "16K20F3 Z: following error with each estimator in the loop",
+        vec![panel(figures::FOLLOWING_ERROR, series.collect())],
+    )
+}
+
+fn save(figure: &Figure, path: &str) -> Result<(), CommandError> {
+    std::fs::create_dir_all(FOLDER).map_err(CommandError::write(Path::new(FOLDER)))?;
+    figure.save(Path::new(path))?;
+    print(&format!("{path}\n"))
+}

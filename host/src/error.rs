@@ -1,0 +1,53 @@
+//! Errors of the command, and the exit code that each means.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Why a command could not do its job.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    /// The command line asks for something that cannot be.
+    #[error("{0}")]
+    Usage(String),
+    /// A capture cannot be read.
+    #[error(transparent)]
+    Recording(#[from] crate::recording::RecordingError),
+    /// A machine file cannot be used.
+    #[error(transparent)]
+    MachineFile(#[from] crate::machine_file::MachineFileError),
+    /// A scenario cannot run.
+    #[error(transparent)]
+    Scenario(#[from] leadscrew_hal_mock::scenario::ScenarioError),
+    /// A plot cannot be made.
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PlotError),
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {reason}", file.display())]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        reason: std::io::Error,
+    },
+    /// Something is wrong with the data.
+    #[error("{0}")]
+    Data(String),
+}
+
+impl CommandError {
+    /// A write error of `file`.
+    pub fn write(file: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let file = file.to_owned();
+        move |reason| Self::Write { file, reason }
+    }
+
+    /// 2 for bad usage, 1 for a job that failed.
+    #[must_use]
+    pub const fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) | Self::Scenario(_) => 2,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! The `leadscrew` command: the core of the axis on a simulated machine, or on a recording of a real
+//! encoder, with reports and plots.
+
+pub mod accuracy;
+pub mod cli;
+pub mod command;
+pub mod error;
+pub mod figures;
+pub mod machine_file;
+pub mod noise;
+pub mod plot;
+mod progress;
+pub mod recording;
+pub mod report;
+pub mod sampler;
+pub mod simulation;
+pub mod statistics;
+pub mod truth;
+mod whole_file;

@@ -1,0 +1,52 @@
+//! How much of the noise of a count an estimator lets through.
+
+use leadscrew::capture::Unwrapper;
+use leadscrew::estimator::{Estimator, EstimatorConfig};
+use leadscrew::hal::Capture;
+
+use crate::statistics::Spread;
+
+/// Standard deviation of the rounding to a whole count, d: 1/√12.
+pub const QUANTISATION_SIGMA_D: f64 = 0.288_675_134_594_812_9;
+
+/// Gains from white noise of position (σ in d) to noise of the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseGain {
+    /// σ of velocity in d/tick per d.
+    pub velocity: f64,
+    /// σ of acceleration in d/tick² per d.
+    pub acceleration: f64,
+}
+
+/// Counts of the test impulse: the acceleration of a plain difference stays within its format.
+const IMPULSE: u32 = 60;
+
+impl NoiseGain {
+    /// The gains of a linear estimator, from its response to one sample out of place: the root of the
+    /// sum of squares of the impulse response.
+    #[must_use]
+    pub fn of(config: EstimatorConfig) -> Self {
+        let mut unwrapper = Unwrapper::new();
+        let mut estimator = Estimator::new(config);
+        let (mut velocity, mut acceleration) = (Spread::default(), Spread::default());
+        let rest = 2 * config.warm_up_ticks() + 8;
+        for tick in 0..rest {
+            let count = if tick == 1 { IMPULSE } else { 0 };
+            let capture = Capture {
+                count,
+                sampled_at: tick,
+                ..Capture::default()
+            };
+            let estimate = estimator.update(&unwrapper.unwrap(&capture));
+            velocity.push(estimate.velocity.to_num());
+            acceleration.push(estimate.acceleration.to_num());
+        }
+        let gain = |response: Spread| {
+            response.rms() * (response.count() as f64).sqrt() / f64::from(IMPULSE)
+        };
+        Self {
+            velocity: gain(velocity),
+            acceleration: gain(acceleration),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Rows that the CSV files of simulation and replay share, and the figures of an estimator.
+
+use std::io::Write;
+
+use leadscrew::estimator::{Estimate, EstimatorConfig};
+use serde::Serialize;
+
+use crate::noise::{NoiseGain, QUANTISATION_SIGMA_D};
+
+/// Columns of every CSV, in order; further ones are only ever appended.
+pub const COLUMNS: [&str; 11] = [
+    "tick",
+    "time_s",
+    "count_d",
+    "position_d",
+    "velocity_d_per_tick",
+    "acceleration_d_per_tick2",
+    "lag_x_ticks",
+    "lag_v_ticks",
+    "lag_a_ticks",
+    "sigma_v",
+    "sigma_a",
+];
+
+/// Lags of an estimator, ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LagFigures {
+    /// Lag of the position at constant velocity.
+    pub lag_x_ticks: f64,
+    /// Lag of the velocity at constant acceleration.
+    pub lag_v_ticks: f64,
+    /// Lag of the acceleration at constant jerk.
+    pub lag_a_ticks: f64,
+}
+
+impl From<&EstimatorConfig> for LagFigures {
+    fn from(config: &EstimatorConfig) -> Self {
+        let lags = config.lags();
+        Self {
+            lag_x_ticks: lags.position.to_num(),
+            lag_v_ticks: lags.velocity.to_num(),
+            lag_a_ticks: lags.acceleration.to_num(),
+        }
+    }
+}
+
+/// Writes the shared columns of a tick, and any further ones.
+pub struct CsvReport<W: Write> {
+    writer: csv::Writer<W>,
+    tick_hz: f64,
+    sigma: NoiseGain,
+}
+
+impl<W: Write> CsvReport<W> {
+    /// Starts a report for an estimator; `further` names the columns after the shared ones.
+    ///
+    /// The columns `sigma_v` and `sigma_a` hold what the rounding to whole counts alone leaves (1/√12 d,
+    /// white); what else an encoder adds is not in them.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn new(
+        writer: W,
+        tick_hz: f64,
+        config: EstimatorConfig,
+        further: &[&str],
+    ) -> csv::Result<Self> {
+        let mut writer = csv::Writer::from_writer(writer);
+        writer.write_record(COLUMNS.iter().chain(further))?;
+        Ok(Self {
+            writer,
+            tick_hz,
+            sigma: NoiseGain::of(config),
+        })
+    }
+
+    /// Writes a tick.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn row(
+        &mut self,
+        tick: u64,
+        count: i64,
+        estimate: &Estimate,
+        further: &[f64],
+    ) -> csv::Result<()> {
+        let shared = [
+            estimate.position.to_num(),
+            estimate.velocity.to_num(),
+            estimate.acceleration.to_num(),
+            estimate.lags.position.to_num(),
+            estimate.lags.velocity.to_num(),
+            estimate.lags.acceleration.to_num(),
+            self.sigma.velocity * QUANTISATION_SIGMA_D,
+            self.sigma.acceleration * QUANTISATION_SIGMA_D,
+        ];
+        self.writer.write_field(tick.to_string())?;
+        self.writer
+            .write_field((tick as f64 / self.tick_hz).to_string())?;
+        self.writer.write_field(count.to_string())?;
+        for value in shared.iter().chain(further) {
+            let text = format!("{value:.9}");
+            self.writer
+                .write_field(text.trim_end_matches('0').trim_end_matches('.'))?;
+        }
+        self.writer.write_record(None::<&[u8]>)
+    }
+
+    /// Ends the report.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn finish(mut self) -> std::io::Result<()> {
+        self.writer.flush()
+    }
+}

@@ -1,0 +1,234 @@
+//! A run of the simulated machine with every estimator listening.
+
+use leadscrew::axis::{Axis, Outputs};
+use leadscrew::capture::Unwrapper;
+use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
+use leadscrew::hal::Encoder;
+use leadscrew_hal_mock::arc::State;
+use leadscrew_hal_mock::machine::{Machine, MachineParams};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script, Simulation};
+use leadscrew_hal_mock::tachogenerator;
+
+use crate::progress::Progress;
+use crate::statistics::Spread;
+use crate::truth::TruthTrack;
+
+/// What is to be run.
+#[derive(Clone, Copy, Debug)]
+pub struct RunSpec {
+    /// The machine.
+    pub machine: MachineParams,
+    /// The move.
+    pub scenario: MoveAndBack,
+    /// The estimator in the loop.
+    pub estimator: EstimatorConfig,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// A tick of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// What the axis put out.
+    pub outputs: Outputs,
+    /// Carriage, d.
+    pub carriage: f64,
+    /// Reading of the tachogenerator, d/tick.
+    pub tachogenerator: f64,
+}
+
+/// What an estimator that only listens said, tick by tick.
+#[derive(Clone, Debug)]
+pub struct Listener {
+    /// Its configuration.
+    pub config: EstimatorConfig,
+    /// Its estimates.
+    pub estimates: Vec<Estimate>,
+}
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The ticks.
+    pub ticks: Vec<Tick>,
+    /// The shaft's true motion.
+    pub truth: TruthTrack,
+    /// All estimators of the core on the same captures.
+    pub listeners: Vec<Listener>,
+    /// Digest of inputs and outputs of the axis.
+    pub digest: u64,
+    /// Control rate, Hz.
+    pub tick_hz: f64,
+}
+
+/// All estimators with their default parameters.
+///
+/// # Panics
+/// Never: the defaults are within their ranges, which a test checks.
+#[must_use]
+pub fn all_estimators() -> Vec<EstimatorConfig> {
+    let named = |name: &&str| EstimatorConfig::by_name(name).ok().flatten();
+    EstimatorConfig::NAMES.iter().filter_map(named).collect()
+}
+
+impl RunSpec {
+    /// Runs it.
+    ///
+    /// # Errors
+    /// A parameter that is out of range or a move that cannot be planned.
+    pub fn run(&self) -> Result<Run, ScenarioError> {
+        let params = self.scenario.axis_params(&self.machine, self.estimator)?;
+        let config = params.validate()?;
+        let script = Script::new(&self.scenario, params.motion.counts_per_mm, &config)?;
+        let machine = Machine::new(&self.machine, self.scenario.tick_hz, self.seed)?;
+        let mut simulation = Simulation::new(machine, Axis::new(config), script);
+
+        let mut listening = Listening::new(all_estimators());
+        let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));
+        let mut ticks = Vec::with_capacity(simulation.ticks() as usize);
+        let mut truth = TruthTrack::default();
+        while let Some(outputs) = simulation.step()? {
+            let state = simulation.machine.truth();
+            listening.hear(&simulation.machine);
+            truth.push(state.shaft);
+            let tachogenerator = simulation.machine.read_tachogenerator();
+            ticks.push(Tick {
+                outputs,
+                carriage: state.carriage.position,
+                tachogenerator,
+            });
+            progress.step();
+        }
+        Ok(Run {
+            ticks,
+            truth,
+            listeners: listening.listeners,
+            digest: simulation.digest(),
+            tick_hz: self.scenario.tick_hz,
+        })
+    }
+}
+
+struct Listening {
+    unwrapper: Unwrapper,
+    estimators: Vec<Estimator>,
+    listeners: Vec<Listener>,
+}
+
+impl Listening {
+    fn new(configs: Vec<EstimatorConfig>) -> Self {
+        Self {
+            unwrapper: Unwrapper::new(),
+            estimators: configs
+                .iter()
+                .map(|&config| Estimator::new(config))
+                .collect(),
+            listeners: configs
+                .into_iter()
+                .map(|config| Listener {
+                    config,
+                    estimates: Vec::new(),
+                })
+                .collect(),
+        }
+    }
+
+    fn hear(&mut self, machine: &Machine) {
+        let observation = self.unwrapper.unwrap(&machine.capture());
+        for (estimator, listener) in self.estimators.iter_mut().zip(&mut self.listeners) {
+            listener.estimates.push(estimator.update(&observation));
+        }
+    }
+}
+
+/// Errors of an estimator while the axis moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    /// Velocity against the truth at its lag, d/tick.
+    pub velocity: Spread,
+    /// Acceleration against the truth at its lag, d/tick².
+    pub acceleration: Spread,
+    /// Velocity against the tachogenerator at its lag, d/tick.
+    pub against_tachogenerator: Spread,
+}
+
+impl Run {
+    /// Following error over the whole run, d.
+    #[must_use]
+    pub fn following_error(&self) -> Spread {
+        self.ticks
+            .iter()
+            .map(|tick| tick.outputs.following_error.to_num())
+            .collect()
+    }
+
+    /// The shaft's true state at each tick.
+    #[must_use]
+    pub fn true_states(&self) -> Vec<State> {
+        (0..self.ticks.len())
+            .filter_map(|tick| self.truth.before(tick, 0.0))
+            .collect()
+    }
+
+    /// Velocity errors of a listener over time in s, each at the instant of its estimate.
+    #[must_use]
+    pub fn velocity_errors(&self, listener: &Listener) -> Vec<(f64, f64)> {
+        let lag: f64 = listener.config.lags().velocity.to_num();
+        let error = |(tick, estimate): (usize, &Estimate)| {
+            let truth = self.truth.before(tick, lag)?;
+            Some((
+                (tick as f64 - lag) / self.tick_hz,
+                estimate.velocity.to_num::<f64>() - truth.velocity,
+            ))
+        };
+        listener
+            .estimates
+            .iter()
+            .enumerate()
+            .filter_map(error)
+            .collect()
+    }
+
+    /// Errors of a listener in the ticks in which a move runs.
+    #[must_use]
+    pub fn accuracy(&self, listener: &Listener) -> Accuracy {
+        let lags = listener.config.lags();
+        let (lag_v, lag_a) = (
+            lags.velocity.to_num::<f64>(),
+            lags.acceleration.to_num::<f64>(),
+        );
+        let mut accuracy = Accuracy::default();
+        for (tick, estimate) in listener.estimates.iter().enumerate() {
+            if !self.ticks[tick].outputs.moving {
+                continue;
+            }
+            let velocity: f64 = estimate.velocity.to_num();
+            if let Some(truth) = self.truth.before(tick, lag_v) {
+                accuracy.velocity.push(velocity - truth.velocity);
+            }
+            if let Some(truth) = self.truth.before(tick, lag_a) {
+                accuracy
+                    .acceleration
+                    .push(estimate.acceleration.to_num::<f64>() - truth.acceleration);
+            }
+            if let Some(reading) = self.tachogenerator(tick, lag_v) {
+                accuracy.against_tachogenerator.push(velocity - reading);
+            }
+        }
+        accuracy
+    }
+
+    /// The tachogenerator's reading `lag` ticks before tick `tick`, between readings by a straight line.
+    fn tachogenerator(&self, tick: usize, lag: f64) -> Option<f64> {
+        // Samples lie evenly in the tick, the first at its start: their mean is half a spacing late.
+        let age = 0.5 + 0.5 * self.tick_hz / tachogenerator::SAMPLE_HZ;
+        let instant = tick as f64 - lag + age;
+        let at = |index: usize| self.ticks.get(index).map(|tick| tick.tachogenerator);
+        if instant < 0.0 {
+            return None;
+        }
+        let (before, share) = (at(instant as usize)?, instant.fract());
+        let after = at(instant as usize + 1).unwrap_or(before);
+        Some(before + share * (after - before))
+    }
+}

@@ -1,0 +1,87 @@
+//! Figures of merit: rms, peak, slope.
+
+/// Running sums of a signal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    count: u64,
+    squares: f64,
+    peak: f64,
+}
+
+impl Spread {
+    /// Takes in a value; not-a-number is passed over.
+    pub fn push(&mut self, value: f64) {
+        if value.is_finite() {
+            self.count += 1;
+            self.squares += value * value;
+            self.peak = self.peak.max(value.abs());
+        }
+    }
+
+    /// Root of the mean square, bias included; 0 of nothing.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        if self.count == 0 {
+            0.0
+        } else {
+            (self.squares / self.count as f64).sqrt()
+        }
+    }
+
+    /// Largest magnitude.
+    #[must_use]
+    pub const fn peak(&self) -> f64 {
+        self.peak
+    }
+
+    /// Values taken in.
+    #[must_use]
+    pub const fn count(&self) -> u64 {
+        self.count
+    }
+}
+
+impl Extend<f64> for Spread {
+    fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
+        values.into_iter().for_each(|value| self.push(value));
+    }
+}
+
+impl FromIterator<f64> for Spread {
+    fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
+        let mut spread = Self::default();
+        spread.extend(values);
+        spread
+    }
+}
+
+/// Least-squares slope of y over x; `None` for fewer than two different x.
+#[must_use]
+pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let count = points.len() as f64;
+    let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
+    let mean_y = points.iter().map(|point| point.1).sum::<f64>() / count;
+    let (mut across, mut along) = (0.0, 0.0);
+    for (x, y) in points {
+        across += (x - mean_x) * (y - mean_y);
+        along += (x - mean_x) * (x - mean_x);
+    }
+    (along > 0.0).then(|| across / along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spread_and_slope_of_known_values() {
+        let spread: Spread = [3.0, -4.0, f64::NAN].into_iter().collect();
+        assert_eq!(
+            (spread.rms(), spread.peak(), spread.count()),
+            (12.5_f64.sqrt(), 4.0, 2)
+        );
+        assert_eq!(slope(&[(0.0, 1.0), (1.0, 3.0), (2.0, 5.0)]), Some(2.0));
+        assert_eq!(slope(&[(1.0, 1.0), (1.0, 3.0)]), None);
+        assert_eq!(slope(&[]), None);
+    }
+}

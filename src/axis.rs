@@ -1,0 +1,145 @@
+//! The composition: one pure step from what a board saw to what it shall put out.
+
+use crate::capture::{CaptureHealth, Unwrapper};
+use crate::controller::{Controller, FollowingError};
+use crate::estimator::{Estimate, Estimator};
+use crate::hal::Capture;
+use crate::output::{ActiveLimits, Output};
+use crate::params::AxisConfig;
+use crate::setpoint::Setpoint;
+use crate::setpoint::profile::Profile;
+use crate::setpoint::trajectory::{QueueError, Trajectory};
+use crate::units::Command;
+
+/// What a tick takes in.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// What the encoder inputs saw.
+    pub capture: Capture<'a>,
+    /// The axis is to be under control.
+    pub enable: bool,
+}
+
+/// What a tick gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// Number of the tick, from 0; wraps.
+    pub tick: u32,
+    /// Count without wrap.
+    pub count: i64,
+    /// Command to the drive; zero while not enabled.
+    pub command: Command,
+    /// The drive is to be enabled.
+    pub enabled: bool,
+    /// A move runs.
+    pub moving: bool,
+    /// Limits that hold the command back.
+    pub limits: ActiveLimits,
+    /// Setpoint less measured position, d.
+    pub following_error: FollowingError,
+    /// Where the axis is.
+    pub estimate: Estimate,
+    /// Where it should be.
+    pub setpoint: Setpoint,
+}
+
+/// One axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    unwrapper: Unwrapper,
+    estimator: Estimator,
+    trajectory: Trajectory,
+    controller: Controller,
+    output: Output,
+    config: AxisConfig,
+    /// The tick that comes next.
+    tick: u32,
+    enabled: bool,
+}
+
+impl Axis {
+    /// An axis that is not enabled.
+    #[must_use]
+    pub fn new(config: AxisConfig) -> Self {
+        Self {
+            unwrapper: Unwrapper::new(),
+            estimator: Estimator::new(config.estimator),
+            trajectory: Trajectory::new(),
+            controller: Controller::new(config.controller),
+            output: Output::new(config.output),
+            config,
+            tick: 0,
+            enabled: false,
+        }
+    }
+
+    /// One tick. Bounded time, no allocation, no panic; call once per sample, in order.
+    pub fn step(&mut self, inputs: &Inputs<'_>) -> Outputs {
+        let tick = self.tick;
+        self.tick = tick.wrapping_add(1);
+        let observation = self.unwrapper.unwrap(&inputs.capture);
+        let estimate = self.estimator.update(&observation);
+        let position = observation.position();
+        if !(inputs.enable && self.enabled) {
+            self.trajectory.hold(position);
+            self.controller.reset();
+        }
+        self.enabled = inputs.enable;
+
+        let setpoint = self.trajectory.step(tick);
+        let active = self.output.active_limits();
+        let demand = self.controller.step(&setpoint, position, &estimate, active);
+        let command = if inputs.enable {
+            self.output.step(demand.command)
+        } else {
+            self.output.off()
+        };
+        Outputs {
+            tick,
+            count: observation.count,
+            command,
+            enabled: inputs.enable,
+            moving: self.trajectory.is_moving(),
+            limits: self.output.active_limits(),
+            following_error: demand.following_error,
+            estimate,
+            setpoint,
+        }
+    }
+
+    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
+    ///
+    /// # Errors
+    /// [`QueueError`]; the axis then goes on as it was.
+    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
+        if !self.enabled {
+            return Err(QueueError::Disabled);
+        }
+        self.trajectory
+            .queue(profile, start, self.tick.wrapping_sub(1))
+    }
+
+    /// Takes a new configuration between two ticks. The output goes on without a step; another
+    /// estimator starts anew from the next sample.
+    pub fn reconfigure(&mut self, config: AxisConfig) {
+        if config.estimator != self.config.estimator {
+            self.estimator = Estimator::new(config.estimator);
+        }
+        self.controller
+            .reconfigure(config.controller, self.output.command());
+        self.output.reconfigure(config.output);
+        self.config = config;
+    }
+
+    /// The configuration in force.
+    #[must_use]
+    pub const fn config(&self) -> &AxisConfig {
+        &self.config
+    }
+
+    /// What went wrong at the encoder so far.
+    #[must_use]
+    pub const fn capture_health(&self) -> CaptureHealth {
+        self.unwrapper.health()
+    }
+}

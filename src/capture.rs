@@ -1,0 +1,257 @@
+//! From the wrapping words of the hardware to counts and times without wrap.
+//!
+//! The counter and the timer of a board wrap at 32 bits; this is the one place where they are
+//! unwrapped to 64. Lost edges, overruns and illegal transitions are counted here, never dropped.
+
+use crate::hal::{Capture, Latch};
+use crate::units::Position;
+
+/// Largest motion in one tick that the velocity format carries, counts. A larger one is clamped to
+/// this in [`Observation::delta`] and counted in [`CaptureHealth::overspeed_ticks`].
+pub const MAX_DELTA: i32 = 2047;
+
+/// A latch with count and time unwrapped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnwrappedLatch {
+    /// Count at the event since start-up.
+    pub count: i64,
+    /// Timer clocks at the event since the timer's zero before the first capture.
+    pub time: i64,
+}
+
+/// One capture, unwrapped: what an estimator sees of a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// Count at the sampling instant, without wrap.
+    pub count: i64,
+    /// Counts since the previous sample, within ±[`MAX_DELTA`]; 0 in the first tick.
+    pub delta: i32,
+    /// Timer clocks at the sampling instant, without wrap.
+    pub sampled_at: i64,
+    /// Timer clocks since the previous sample; 0 in the first tick.
+    pub elapsed: u32,
+    /// Timer clocks from the newest edge to the sample, if an edge came in this tick.
+    pub since_last_edge: Option<u32>,
+    /// Times of all edges of this tick as the hardware gave them, oldest first, in two parts.
+    pub edges: [&'a [u32]; 2],
+    /// True where each edge's position can be inferred: as many edge times as the count moved, none lost.
+    pub edges_complete: bool,
+    /// The index pulse, if it came in this tick.
+    pub index: Option<UnwrappedLatch>,
+    /// The probe, if it triggered in this tick.
+    pub probe: Option<UnwrappedLatch>,
+}
+
+impl Observation<'_> {
+    /// Position that the count alone gives: the middle of the discrete, count + ½.
+    #[must_use]
+    pub fn position(&self) -> Position {
+        Position::from_bits(
+            self.count.wrapping_shl(Position::FRAC_NBITS) | 1 << (Position::FRAC_NBITS - 1),
+        )
+    }
+}
+
+/// Totals of what went wrong at the encoder since start-up; they stop at their maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CaptureHealth {
+    /// Illegal transitions.
+    pub illegal: u32,
+    /// Ticks in which edge times were lost.
+    pub overrun_ticks: u32,
+    /// Ticks in which the edge times do not explain the count (a reversal, or edges lost).
+    pub ambiguous_ticks: u32,
+    /// Ticks in which the count moved by more than [`MAX_DELTA`].
+    pub overspeed_ticks: u32,
+}
+
+/// Unwraps captures; the first one sets the origin and counts as standing still.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unwrapper {
+    count: i64,
+    time: i64,
+    primed: bool,
+    health: CaptureHealth,
+}
+
+impl Unwrapper {
+    /// An unwrapper that takes its origin from the first capture: the count as a signed number, the
+    /// time as it is.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What went wrong so far.
+    #[must_use]
+    pub const fn health(&self) -> CaptureHealth {
+        self.health
+    }
+
+    /// Unwraps one capture. Two captures may lie at most 2³¹ − 1 counts and 2³² − 1 timer clocks apart.
+    pub fn unwrap<'a>(&mut self, capture: &Capture<'a>) -> Observation<'a> {
+        if !self.primed {
+            self.primed = true;
+            self.count = i64::from(capture.count.cast_signed());
+            self.time = i64::from(capture.sampled_at);
+        }
+        // The low words of the 64-bit totals are the previous readings themselves.
+        let moved = capture.count.wrapping_sub(self.count as u32).cast_signed();
+        let elapsed = capture.sampled_at.wrapping_sub(self.time as u32);
+        self.count = self.count.wrapping_add(i64::from(moved));
+        self.time = self.time.wrapping_add(i64::from(elapsed));
+
+        let [older, newer] = capture.edges;
+        let edge_times = older.len().wrapping_add(newer.len());
+        let explained = edge_times == moved.unsigned_abs() as usize;
+        self.note_health(capture, moved, edge_times != 0 && !explained);
+
+        Observation {
+            count: self.count,
+            delta: moved.clamp(-MAX_DELTA, MAX_DELTA),
+            sampled_at: self.time,
+            elapsed,
+            since_last_edge: capture
+                .last_edge_at
+                .map(|at| capture.sampled_at.wrapping_sub(at)),
+            edges: capture.edges,
+            edges_complete: explained && !capture.overrun,
+            index: capture.index.map(|latch| self.unwrap_latch(latch)),
+            probe: capture.probe.map(|latch| self.unwrap_latch(latch)),
+        }
+    }
+
+    fn note_health(&mut self, capture: &Capture<'_>, moved: i32, ambiguous: bool) {
+        let health = &mut self.health;
+        health.illegal = health.illegal.saturating_add(u32::from(capture.illegal));
+        health.overrun_ticks = health
+            .overrun_ticks
+            .saturating_add(u32::from(capture.overrun));
+        health.ambiguous_ticks = health.ambiguous_ticks.saturating_add(u32::from(ambiguous));
+        let overspeed = moved.unsigned_abs() > MAX_DELTA.unsigned_abs();
+        health.overspeed_ticks = health.overspeed_ticks.saturating_add(u32::from(overspeed));
+    }
+
+    /// A latch lies before the sample just taken, by less than half the range of either counter.
+    fn unwrap_latch(&self, latch: Latch) -> UnwrappedLatch {
+        let back = (self.count as u32).wrapping_sub(latch.count).cast_signed();
+        let age = (self.time as u32).wrapping_sub(latch.time);
+        UnwrappedLatch {
+            count: self.count.wrapping_sub(i64::from(back)),
+            time: self.time.wrapping_sub(i64::from(age)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(count: u32, sampled_at: u32) -> Capture<'static> {
+        Capture {
+            count,
+            sampled_at,
+            ..Capture::default()
+        }
+    }
+
+    #[test]
+    fn the_first_capture_is_the_origin() {
+        let first = Unwrapper::new().unwrap(&at(u32::MAX, 77));
+        assert_eq!(
+            (first.count, first.delta, first.sampled_at, first.elapsed),
+            (-1, 0, 77, 0)
+        );
+        assert_eq!(first.position(), Position::from_num(-0.5));
+    }
+
+    #[test]
+    fn both_counters_wrap_both_ways() {
+        let mut unwrapper = Unwrapper::new();
+        unwrapper.unwrap(&at(0x7fff_fffe, 0xffff_ff00));
+        let over = unwrapper.unwrap(&at(0x8000_0002, 0x100));
+        assert_eq!((over.delta, over.count), (4, 0x8000_0002));
+        assert_eq!((over.elapsed, over.sampled_at), (0x200, 0x1_0000_0100));
+        let back = unwrapper.unwrap(&at(0x7fff_ffff, 0x200));
+        assert_eq!((back.delta, back.count), (-3, 0x7fff_ffff));
+    }
+
+    #[test]
+    fn many_turns_of_the_counter_keep_the_exact_total() {
+        let mut unwrapper = Unwrapper::new();
+        unwrapper.unwrap(&at(0, 0));
+        let stride = 0x4000_0001_u32;
+        for turn in 1..=1000_u32 {
+            let seen = unwrapper.unwrap(&at(stride.wrapping_mul(turn), stride.wrapping_mul(turn)));
+            assert_eq!(seen.count, i64::from(stride) * i64::from(turn));
+            assert_eq!(seen.sampled_at, i64::from(stride) * i64::from(turn));
+            assert_eq!(seen.delta, MAX_DELTA);
+        }
+        assert_eq!(unwrapper.health().overspeed_ticks, 1000);
+    }
+
+    #[test]
+    fn edge_times_explain_the_count_or_are_ambiguous() {
+        let mut unwrapper = Unwrapper::new();
+        unwrapper.unwrap(&at(10, 0));
+        let times = [5, 6, 7];
+        let edges = [&times[..2], &times[2..]];
+        let forward = Capture {
+            edges,
+            last_edge_at: Some(7),
+            ..at(13, 10)
+        };
+        let seen = unwrapper.unwrap(&forward);
+        assert!(seen.edges_complete);
+        assert_eq!(seen.since_last_edge, Some(3));
+        let reversal = Capture {
+            edges,
+            ..at(14, 20)
+        };
+        assert!(!unwrapper.unwrap(&reversal).edges_complete);
+        assert_eq!(unwrapper.health().ambiguous_ticks, 1);
+        let lost = Capture {
+            edges,
+            overrun: true,
+            illegal: 2,
+            ..at(17, 30)
+        };
+        assert!(!unwrapper.unwrap(&lost).edges_complete);
+        let health = unwrapper.health();
+        assert_eq!(
+            (health.illegal, health.overrun_ticks, health.ambiguous_ticks),
+            (2, 1, 1)
+        );
+    }
+
+    #[test]
+    fn latches_are_unwrapped_relative_to_the_sample() {
+        let mut unwrapper = Unwrapper::new();
+        unwrapper.unwrap(&at(0xffff_fff0, 0xffff_fff0));
+        let index = Some(Latch {
+            count: 0xffff_fffe,
+            time: 0xffff_fffd,
+        });
+        let probe = Some(Latch { count: 3, time: 2 });
+        let seen = unwrapper.unwrap(&Capture {
+            index,
+            probe,
+            ..at(4, 4)
+        });
+        assert_eq!(seen.count, 4);
+        assert_eq!(
+            seen.index,
+            Some(UnwrappedLatch {
+                count: -2,
+                time: 0xffff_fffd
+            })
+        );
+        assert_eq!(
+            seen.probe,
+            Some(UnwrappedLatch {
+                count: 3,
+                time: 0x1_0000_0002
+            })
+        );
+    }
+}

@@ -1,0 +1,52 @@
+//! Differences of the count: V = X − X₋₁, a = V − V₋₁ (P1, formulas 1 and 2).
+//!
+//! Exact in fixed point; what it lacks is resolution: one discrete a tick.
+
+use super::{Estimate, Lags};
+use crate::capture::Observation;
+use crate::units::{Acceleration, Lag, Velocity};
+
+/// There is nothing to choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config;
+
+impl Config {
+    pub(super) const fn lags(&self) -> Lags {
+        Lags {
+            position: Lag::ZERO,
+            velocity: Lag::lit("0.5"),
+            acceleration: Lag::ONE,
+        }
+    }
+
+    pub(super) const fn warm_up_ticks(&self) -> u32 {
+        2
+    }
+}
+
+/// The previous difference is the whole state.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    previous_delta: i32,
+}
+
+impl Estimator {
+    /// An estimator at rest.
+    #[must_use]
+    pub const fn new(_: Config) -> Self {
+        Self { previous_delta: 0 }
+    }
+
+    /// Takes a tick's observation. An acceleration beyond ±128 d/tick² saturates.
+    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+        let delta = observation.delta;
+        let change = delta.wrapping_sub(self.previous_delta);
+        self.previous_delta = delta;
+        Estimate {
+            position: observation.position(),
+            velocity: Velocity::wrapping_from_num(delta),
+            acceleration: Acceleration::saturating_from_num(change),
+            lags: const { Config.lags() },
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Exponential smoothing: y += α(x − y), then differenced (P2).
+//!
+//! Kept as the distance `behind` = x − y in Q31.32, not as y itself: with u = behind₋₁ + Δx the
+//! update is v = α·u, behind = u − v, so one multiplication gives position and velocity and the state
+//! stays small wherever the axis stands. α is rounded to 2⁻³¹. The product is rounded down by at most
+//! 2⁻³² d; what is cut stays in `behind`, so the sum of the velocities is exactly the motion of y.
+//! Against an f64 oracle the outputs are right to half their own LSB plus 1e-9 (test).
+
+use super::{Estimate, Lags, acceleration_from, position_behind, velocity_from};
+use crate::capture::Observation;
+use crate::units::{RangeError, checked};
+
+const STATE_FRAC: u32 = 32;
+const ALPHA_FRAC: u32 = 31;
+
+/// The smoothing factor and what follows from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// α in Q0.31.
+    alpha: i32,
+    lags: Lags,
+    warm_up_ticks: u32,
+}
+
+impl Config {
+    /// A filter with smoothing factor `alpha` (the paper's optimum is 0.18).
+    ///
+    /// # Errors
+    /// [`RangeError`] unless 0.001 ≤ α ≤ 0.999.
+    pub fn new(alpha: f64) -> Result<Self, RangeError> {
+        let alpha = checked("estimator.alpha", alpha, 0.001, 0.999)?;
+        Ok(Self {
+            alpha: libm::round(libm::ldexp(alpha, 31)) as i32,
+            lags: Lags::of_differenced((1.0 - alpha) / alpha),
+            warm_up_ticks: libm::ceil(libm::log(1e-6) / libm::log(1.0 - alpha)) as u32,
+        })
+    }
+
+    pub(super) const fn lags(&self) -> Lags {
+        self.lags
+    }
+
+    pub(super) const fn warm_up_ticks(&self) -> u32 {
+        self.warm_up_ticks
+    }
+}
+
+/// Filter state.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    config: Config,
+    /// x − y, d in Q31.32; at most 2 047 d / α < 2²¹ d.
+    behind: i64,
+    /// Velocity of the previous tick, Q31.32.
+    velocity: i64,
+}
+
+impl Estimator {
+    /// A filter at rest.
+    #[must_use]
+    pub const fn new(config: Config) -> Self {
+        Self {
+            config,
+            behind: 0,
+            velocity: 0,
+        }
+    }
+
+    /// Takes a tick's observation.
+    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+        let step = i64::from(observation.delta).wrapping_shl(STATE_FRAC);
+        let ahead = self.behind.wrapping_add(step);
+        let velocity = scale(ahead, self.config.alpha);
+        let acceleration = velocity.wrapping_sub(self.velocity);
+        self.behind = ahead.wrapping_sub(velocity);
+        self.velocity = velocity;
+        Estimate {
+            position: position_behind::<STATE_FRAC>(observation, self.behind),
+            velocity: velocity_from::<STATE_FRAC>(velocity),
+            acceleration: acceleration_from::<STATE_FRAC>(acceleration),
+            lags: self.config.lags,
+        }
+    }
+}
+
+/// `value`·`factor`/2³¹, rounded down, by two 32-bit multiplications; `factor` is not negative and
+/// |value| stays below 2⁶².
+const fn scale(value: i64, factor: i32) -> i64 {
+    let high = value.wrapping_shr(32) as i32;
+    let low = value as u32;
+    let from_high = (high as i64)
+        .wrapping_mul(factor as i64)
+        .wrapping_shl(32 - ALPHA_FRAC);
+    let from_low = (low as u64)
+        .wrapping_mul(factor as u32 as u64)
+        .wrapping_shr(ALPHA_FRAC);
+    from_high.wrapping_add(from_low.cast_signed())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::scale;
+
+    #[test]
+    fn scale_is_the_wide_product_rounded_down() {
+        let values = [
+            0,
+            1,
+            -1,
+            0x1234_5678_9abc,
+            -0x1234_5678_9abc,
+            (1 << 61) + 12_345,
+            -(1 << 61) - 12_345,
+        ];
+        for value in values {
+            for factor in [0, 1, 386_547_057, 1 << 30, i32::MAX] {
+                let exact = (i128::from(value) * i128::from(factor)) >> 31;
+                assert_eq!(
+                    i128::from(scale(value, factor)),
+                    exact,
+                    "{value} * {factor}"
+                );
+            }
+        }
+    }
+}

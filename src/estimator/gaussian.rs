@@ -1,0 +1,133 @@
+//! One-sided Gaussian-weighted moving average, then differenced (P2).
+//!
+//! The newest sample weighs most: α_k ∝ exp(−k²/2σ²), k = 0 … N − 1, Σ α_k = 1. The difference of the
+//! mean is the weighted mean of the differences, v = Σ α_k Δ₋ₖ, so the filter runs over the small
+//! differences. Weights are integers in Q0.30 whose sum is made exactly 2³⁰; every product and sum is
+//! then exact, position included, and only the outputs are rounded, to half their LSB. The weights
+//! themselves are off by at most 2⁻³¹ each (the newest by N·2⁻³¹).
+
+use super::{Estimate, Lags, acceleration_from, position_behind, velocity_from};
+use crate::capture::Observation;
+use crate::units::{RangeError, checked};
+
+/// Longest window, samples.
+pub const MAX_WINDOW: usize = 64;
+
+const WEIGHT_FRAC: u32 = 30;
+
+/// The weights and what follows from them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// α_k in Q0.30, newest first; zero beyond the window.
+    weights: [i32; MAX_WINDOW],
+    window: usize,
+    lags: Lags,
+}
+
+impl Config {
+    /// A window of `window` samples with standard deviation `sigma_ticks` (the paper's optimum is 6;
+    /// 25 samples hold 99.99 % of that bell).
+    ///
+    /// # Errors
+    /// [`RangeError`] unless 0.1 ≤ σ ≤ 64 and 1 ≤ window ≤ [`MAX_WINDOW`].
+    pub fn new(sigma_ticks: f64, window: u32) -> Result<Self, RangeError> {
+        let sigma = checked("estimator.sigma_ticks", sigma_ticks, 0.1, 64.0)?;
+        checked(
+            "estimator.window",
+            f64::from(window),
+            1.0,
+            MAX_WINDOW as f64,
+        )?;
+        let bell = |age: usize| libm::exp(-libm::pow(age as f64 / sigma, 2.0) / 2.0);
+        let window = window as usize;
+        let total: f64 = (0..window).map(bell).sum();
+
+        let mut weights = [0_i32; MAX_WINDOW];
+        let mut missing = 1_i32.wrapping_shl(WEIGHT_FRAC);
+        for (age, weight) in weights.iter_mut().enumerate().take(window) {
+            *weight = libm::round(libm::ldexp(bell(age) / total, WEIGHT_FRAC.cast_signed())) as i32;
+            missing = missing.wrapping_sub(*weight);
+        }
+        if let Some(newest) = weights.first_mut() {
+            *newest = newest.wrapping_add(missing);
+        }
+        let lag = (0..window).map(|age| age as f64 * bell(age) / total).sum();
+        Ok(Self {
+            weights,
+            window,
+            lags: Lags::of_differenced(lag),
+        })
+    }
+
+    pub(super) const fn lags(&self) -> Lags {
+        self.lags
+    }
+
+    pub(super) const fn warm_up_ticks(&self) -> u32 {
+        (self.window as u32).wrapping_add(2)
+    }
+}
+
+/// Window of differences.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    config: Config,
+    /// The differences, newest first from `newest` on; each is stored twice, [`MAX_WINDOW`] apart, so
+    /// that the window is one slice wherever it starts.
+    deltas: [i32; 2 * MAX_WINDOW],
+    newest: usize,
+    /// x − y, d in Q33.30.
+    behind: i64,
+    /// Velocity of the previous tick, Q33.30.
+    velocity: i64,
+}
+
+impl Estimator {
+    /// A filter at rest.
+    #[must_use]
+    pub const fn new(config: Config) -> Self {
+        Self {
+            config,
+            deltas: [0; 2 * MAX_WINDOW],
+            newest: 0,
+            behind: 0,
+            velocity: 0,
+        }
+    }
+
+    /// Takes a tick's observation.
+    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+        self.push(observation.delta);
+        let velocity = self.weighted_sum();
+        let acceleration = velocity.wrapping_sub(self.velocity);
+        let step = i64::from(observation.delta).wrapping_shl(WEIGHT_FRAC);
+        self.behind = self.behind.wrapping_add(step).wrapping_sub(velocity);
+        self.velocity = velocity;
+        Estimate {
+            position: position_behind::<WEIGHT_FRAC>(observation, self.behind),
+            velocity: velocity_from::<WEIGHT_FRAC>(velocity),
+            acceleration: acceleration_from::<WEIGHT_FRAC>(acceleration),
+            lags: self.config.lags,
+        }
+    }
+
+    fn push(&mut self, delta: i32) {
+        self.newest = self.newest.wrapping_sub(1) % MAX_WINDOW;
+        for place in [self.newest, self.newest.wrapping_add(MAX_WINDOW)] {
+            if let Some(slot) = self.deltas.get_mut(place) {
+                *slot = delta;
+            }
+        }
+    }
+
+    /// Σ α_k Δ₋ₖ in Q33.30: at most 2 047·2³⁰.
+    fn weighted_sum(&self) -> i64 {
+        let window = self.deltas.get(self.newest..).unwrap_or(&[]);
+        let weights = self.config.weights.get(..self.config.window).unwrap_or(&[]);
+        let products = weights
+            .iter()
+            .zip(window)
+            .map(|(&weight, &delta)| i64::from(weight).wrapping_mul(i64::from(delta)));
+        products.fold(0, i64::wrapping_add)
+    }
+}

@@ -1,0 +1,178 @@
+//! Estimators: from observations to position, velocity and acceleration, with their lags.
+//!
+//! Each algorithm is a file with two types: a `Config`, made and checked once from physical
+//! parameters, and an `Estimator` that holds the config and the state. All are primed with the first
+//! sample as if the shaft had always stood there, so nothing jumps from zero. State is kept relative
+//! to the newest count, which makes every algorithm independent of where on the axis it works and of
+//! how long it has run.
+//!
+//! | name | velocity | paper |
+//! | --- | --- | --- |
+//! | [`difference`] | V = X − X₋₁ | P1, 1 and 2 |
+//! | [`exponential`] | differenced y += α(x − y) | P2 |
+//! | [`simple`] | differenced mean of N samples | P2 |
+//! | [`gaussian`] | differenced one-sided Gaussian-weighted mean | P2 |
+//!
+//! A further estimator is a file beside these and a line in the list at the end of this one.
+
+pub mod difference;
+pub mod exponential;
+pub mod gaussian;
+pub mod simple;
+
+use crate::capture::Observation;
+use crate::units::{Acceleration, Lag, Position, RangeError, Velocity};
+
+/// What an estimator says after a tick; each quantity holds for the instant `lag` ticks before the
+/// sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Estimate {
+    /// Position, d.
+    pub position: Position,
+    /// Velocity, d/tick.
+    pub velocity: Velocity,
+    /// Acceleration, d/tick²; saturates at the range of its format.
+    pub acceleration: Acceleration,
+    /// How far each of the three lies back.
+    pub lags: Lags,
+}
+
+/// Lags of an estimate in ticks, at low frequency: lag_x at constant velocity, lag_v at constant
+/// acceleration, lag_a at constant jerk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lags {
+    /// lag_x.
+    pub position: Lag,
+    /// lag_v.
+    pub velocity: Lag,
+    /// lag_a.
+    pub acceleration: Lag,
+}
+
+impl Lags {
+    /// Lags of a position smoothed with a lag of `position_ticks` and then differenced once and twice:
+    /// each difference adds half a tick.
+    fn of_differenced(position_ticks: f64) -> Self {
+        Self {
+            position: Lag::saturating_from_num(position_ticks),
+            velocity: Lag::saturating_from_num(position_ticks + 0.5),
+            acceleration: Lag::saturating_from_num(position_ticks + 1.0),
+        }
+    }
+}
+
+/// The count's middle less `behind`, in d with `FRAC` fractional bits; rounds to nearest.
+fn position_behind<const FRAC: u32>(observation: &Observation<'_>, behind: i64) -> Position {
+    let behind = shift_rounded(behind, FRAC.wrapping_sub(Position::FRAC_NBITS));
+    Position::from_bits(observation.position().to_bits().wrapping_sub(behind))
+}
+
+/// A velocity from a value with `FRAC` fractional bits; rounds to nearest. The value is a mean of
+/// [`Observation::delta`]s, which fit the format.
+fn velocity_from<const FRAC: u32>(value: i64) -> Velocity {
+    Velocity::from_bits(shift_rounded(value, FRAC.wrapping_sub(Velocity::FRAC_NBITS)) as i32)
+}
+
+/// An acceleration from a value with `FRAC` fractional bits; rounds to nearest and saturates.
+fn acceleration_from<const FRAC: u32>(value: i64) -> Acceleration {
+    let bits = shift_rounded(value, FRAC.wrapping_sub(Acceleration::FRAC_NBITS));
+    Acceleration::from_bits(saturate(bits))
+}
+
+/// `value` / 2^`bits`, to nearest. `bits` is 1 to 62 and |value| stays below 2⁶².
+const fn shift_rounded(value: i64, bits: u32) -> i64 {
+    value
+        .wrapping_add(1_i64.wrapping_shl(bits.wrapping_sub(1)))
+        .wrapping_shr(bits)
+}
+
+/// The nearest `i32`.
+pub(crate) const fn saturate(value: i64) -> i32 {
+    let low = value as i32;
+    if low as i64 == value {
+        low
+    } else if value < 0 {
+        i32::MIN
+    } else {
+        i32::MAX
+    }
+}
+
+/// The list: `Variant => module, "name", default config`.
+macro_rules! estimators {
+    ($($(#[$doc:meta])* $variant:ident => $module:ident, $name:literal, $default:expr;)*) => {
+        /// Configuration of any estimator.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[expect(clippy::large_enum_variant, reason = "one per axis, and no heap to move the large one to")]
+        pub enum EstimatorConfig {
+            $($(#[$doc])* $variant($module::Config),)*
+        }
+
+        impl EstimatorConfig {
+            /// Names of all estimators, in order of the signal's treatment.
+            pub const NAMES: &'static [&'static str] = &[$($name),*];
+
+            /// The estimator's name.
+            #[must_use]
+            pub const fn name(&self) -> &'static str {
+                match self { $(Self::$variant(_) => $name,)* }
+            }
+
+            /// The estimator of that name with the parameters that its paper found best.
+            ///
+            /// # Errors
+            /// A parameter out of range (not with the values built in). `Ok(None)`: no such name.
+            pub fn by_name(name: &str) -> Result<Option<Self>, RangeError> {
+                $(if name == $name {
+                    return Ok(Some(Self::$variant($default?)));
+                })*
+                Ok(None)
+            }
+
+            /// Lags of the estimate.
+            #[must_use]
+            pub const fn lags(&self) -> Lags {
+                match self { $(Self::$variant(config) => config.lags(),)* }
+            }
+
+            /// Ticks after which the first sample's influence is below 1e-6.
+            #[must_use]
+            pub const fn warm_up_ticks(&self) -> u32 {
+                match self { $(Self::$variant(config) => config.warm_up_ticks(),)* }
+            }
+        }
+
+        /// Any estimator.
+        #[derive(Clone, Debug)]
+        #[expect(clippy::large_enum_variant, reason = "one per axis, and no heap to move the large one to")]
+        pub enum Estimator {
+            $($(#[$doc])* $variant($module::Estimator),)*
+        }
+
+        impl Estimator {
+            /// The estimator that `config` describes, waiting for its first sample.
+            #[must_use]
+            pub const fn new(config: EstimatorConfig) -> Self {
+                match config {
+                    $(EstimatorConfig::$variant(config) => Self::$variant($module::Estimator::new(config)),)*
+                }
+            }
+
+            /// Takes a tick's observation.
+            pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+                match self { $(Self::$variant(estimator) => estimator.update(observation),)* }
+            }
+        }
+    };
+}
+
+estimators! {
+    /// Differences of the count.
+    Difference => difference, "difference", Ok::<_, RangeError>(difference::Config);
+    /// Exponential smoothing.
+    Exponential => exponential, "exponential", exponential::Config::new(0.18);
+    /// Simple moving average.
+    Simple => simple, "simple", simple::Config::new(15);
+    /// One-sided Gaussian-weighted moving average.
+    Gaussian => gaussian, "gaussian", gaussian::Config::new(6.0, 25);
+}

@@ -1,0 +1,147 @@
+//! Simple moving average over N samples, then differenced (P2), in O(1) a tick.
+//!
+//! Over the last N differences Δ the velocity is their sum over N and the acceleration the newest
+//! less the oldest over N; the position's distance behind the newest count is a running sum of sums.
+//! All three sums are exact integers and each is divided once, so there is no drift and the outputs
+//! are right to half their own LSB.
+
+use super::{Estimate, Lags};
+use crate::capture::Observation;
+use crate::units::{Acceleration, Position, RangeError, Velocity, checked};
+
+/// Longest window, samples.
+pub const MAX_WINDOW: usize = 64;
+
+/// The window and what follows from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    window: i32,
+    lags: Lags,
+}
+
+impl Config {
+    /// A mean of `window` samples (the paper's optimum is 15).
+    ///
+    /// # Errors
+    /// [`RangeError`] unless 1 ≤ window ≤ [`MAX_WINDOW`].
+    pub fn new(window: u32) -> Result<Self, RangeError> {
+        checked(
+            "estimator.window",
+            f64::from(window),
+            1.0,
+            MAX_WINDOW as f64,
+        )?;
+        let lag = (f64::from(window) - 1.0) / 2.0;
+        Ok(Self {
+            window: window.cast_signed(),
+            lags: Lags::of_differenced(lag),
+        })
+    }
+
+    pub(super) const fn lags(&self) -> Lags {
+        self.lags
+    }
+
+    pub(super) const fn warm_up_ticks(&self) -> u32 {
+        self.window.cast_unsigned().wrapping_add(2)
+    }
+}
+
+/// Window of differences and the sums over it.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    config: Config,
+    deltas: [i32; MAX_WINDOW],
+    oldest: usize,
+    /// Σ Δ over the window: x − x₋ₙ, within ±2¹⁷.
+    moved: i32,
+    /// Σ (x − x₋ₖ) over k = 0 … N − 1, within ±2²².
+    behind: i32,
+}
+
+impl Estimator {
+    /// A filter at rest.
+    #[must_use]
+    pub const fn new(config: Config) -> Self {
+        Self {
+            config,
+            deltas: [0; MAX_WINDOW],
+            oldest: 0,
+            moved: 0,
+            behind: 0,
+        }
+    }
+
+    /// Takes a tick's observation. An acceleration beyond ±128 d/tick² saturates.
+    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+        let window = self.config.window;
+        let newest = observation.delta;
+        let oldest = self.exchange(newest);
+        let change = newest.wrapping_sub(oldest);
+        // Every older sample falls back by Δ, and the one that leaves takes its distance with it.
+        let others = self.moved.wrapping_sub(oldest);
+        self.behind = self
+            .behind
+            .wrapping_sub(others)
+            .wrapping_add(newest.wrapping_mul(window.wrapping_sub(1)));
+        self.moved = self.moved.wrapping_add(change);
+
+        let behind = divide::<{ Position::FRAC_NBITS }>(self.behind, window);
+        Estimate {
+            position: Position::from_bits(observation.position().to_bits().wrapping_sub(behind)),
+            velocity: Velocity::from_bits(
+                divide::<{ Velocity::FRAC_NBITS }>(self.moved, window) as i32
+            ),
+            acceleration: Acceleration::from_bits(super::saturate(divide::<
+                { Acceleration::FRAC_NBITS },
+            >(change, window))),
+            lags: self.config.lags,
+        }
+    }
+
+    /// Puts the newest difference in the place of the oldest and returns the latter.
+    fn exchange(&mut self, newest: i32) -> i32 {
+        let slot = self.oldest;
+        let next = slot.wrapping_add(1);
+        self.oldest = if next >= self.config.window as usize {
+            0
+        } else {
+            next
+        };
+        self.deltas
+            .get_mut(slot)
+            .map_or(0, |place| core::mem::replace(place, newest))
+    }
+}
+
+/// `sum`·2^`FRAC` / `count`, to nearest, by two 32-bit divisions; `count` is 1 to [`MAX_WINDOW`].
+fn divide<const FRAC: u32>(sum: i32, count: i32) -> i64 {
+    let whole = sum.checked_div(count).unwrap_or(0);
+    let rest = sum.wrapping_sub(whole.wrapping_mul(count));
+    let half = count.wrapping_shr(1);
+    let half = if rest < 0 { half.wrapping_neg() } else { half };
+    let fraction = rest
+        .wrapping_shl(FRAC)
+        .wrapping_add(half)
+        .checked_div(count)
+        .unwrap_or(0);
+    i64::from(whole)
+        .wrapping_shl(FRAC)
+        .wrapping_add(i64::from(fraction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::divide;
+
+    #[test]
+    fn division_rounds_to_nearest() {
+        for count in 1..=64 {
+            for sum in [-131_008, -1001, -15, -1, 0, 1, 7, 1001, 131_008] {
+                let exact = f64::from(sum) / f64::from(count) * f64::from(1 << 24);
+                let error = divide::<24>(sum, count) as f64 - exact;
+                assert!(error.abs() <= 0.5, "{sum} / {count}: off by {error} LSB");
+            }
+        }
+    }
+}

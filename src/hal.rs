@@ -1,0 +1,56 @@
+//! The seam: what a board gives to the core, and nothing more.
+//!
+//! The same shapes are filled by timer hardware, by the software decode of a recording and by the
+//! simulator; the core cannot tell them apart.
+
+use crate::units::Command;
+
+/// What the encoder inputs saw up to one sampling instant.
+///
+/// All times are values of one free-running 32-bit timer that wraps; all counts are values of one
+/// 32-bit x4 counter that wraps. Count k means that the shaft is between the boundaries k and k + 1,
+/// x ∈ [k, k+1) d: the boundary between counts k − 1 and k is the same physical edge in both
+/// directions, hysteresis apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Capture<'a> {
+    /// The x4 count at the sampling instant.
+    pub count: u32,
+    /// The timer at the sampling instant.
+    pub sampled_at: u32,
+    /// Time of the newest edge, if one came since the previous capture.
+    pub last_edge_at: Option<u32>,
+    /// Times of all edges since the previous capture, oldest first, as the two parts of a ring; both
+    /// empty where the source keeps only the newest edge.
+    ///
+    /// They are times only: neither channel nor direction is known.
+    pub edges: [&'a [u32]; 2],
+    /// Illegal transitions (both channels at once) since the previous capture.
+    pub illegal: u16,
+    /// Edge times were lost since the previous capture; the count is still good.
+    pub overrun: bool,
+    /// The index pulse, if it came since the previous capture.
+    pub index: Option<Latch>,
+    /// The probe input, if it triggered since the previous capture.
+    pub probe: Option<Latch>,
+}
+
+/// Count and time that hardware latched at an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Latch {
+    /// The x4 count at the event.
+    pub count: u32,
+    /// The timer at the event.
+    pub time: u32,
+}
+
+/// A source of captures.
+pub trait Encoder {
+    /// The capture of the newest sampling instant.
+    fn capture(&self) -> Capture<'_>;
+}
+
+/// The drive behind the ±10 V converter and its enable line.
+pub trait Drive {
+    /// Sets the command; `enable` false means 0 V with the enable line off, whatever the command.
+    fn command(&mut self, command: Command, enable: bool);
+}

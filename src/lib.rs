@@ -1,0 +1,51 @@
+//! Motion control of one machine-tool axis with a quadrature encoder, in fixed point.
+//!
+//! ```text
+//! setpoint ──────────────┐
+//! (trajectory)           ▼
+//!                    ┌─────────┐      ┌────────────┐     ┌────────┐
+//! encoder ─► capture │estimator│ ───► │ controller │ ──► │ output │ ──► drive ±10 V
+//!  A B Z     count + └─────────┘      │ PID+FF     │     │ limits │
+//!  probe     edge times               └────────────┘     └────────┘
+//!                                       telemetry ◄── every stage
+//! ```
+//!
+//! Read in the order of the path: [`hal`] is the seam to a board, [`quadrature`] decodes where no
+//! hardware does, [`capture`] unwraps, [`estimator`] finds velocity and acceleration, [`setpoint`]
+//! says where to be, [`controller`] what to do about it, [`output`] limits it, [`telemetry`] tells of
+//! it. [`axis`] puts them together into one pure step; [`params`] makes its configuration from
+//! physical units, by the conversions in [`units`].
+//!
+//! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
+//! counters wrap by type and are unwrapped in one place, everything else saturates or is bounded by
+//! an argument written beside it. Sums that are so bounded use wrapping operations, which cannot panic.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(
+    clippy::arithmetic_side_effects,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used
+)]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing,
+        clippy::unwrap_used
+    )
+)]
+
+pub mod axis;
+pub mod capture;
+pub mod controller;
+pub mod estimator;
+pub mod hal;
+pub mod output;
+pub mod parameter_table;
+pub mod params;
+pub mod quadrature;
+pub mod setpoint;
+pub mod telemetry;
+pub mod units;

@@ -1,0 +1,21 @@
+//! Where the axis should be: sources of setpoints.
+//!
+//! [`profile`] plans a move outside the tick, [`trajectory`] evaluates the plan in the tick.
+
+pub mod profile;
+pub mod trajectory;
+
+use crate::units::{Acceleration, Jerk, Position, Velocity};
+
+/// Where the axis should be at a tick, with the derivatives that the feedforward needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Setpoint {
+    /// Position, d.
+    pub position: Position,
+    /// Velocity, d/tick.
+    pub velocity: Velocity,
+    /// Acceleration, d/tick².
+    pub acceleration: Acceleration,
+    /// Jerk in force from this tick to the next, d/tick³; saturates at the range of its format.
+    pub jerk: Jerk,
+}
