@@ -9,7 +9,7 @@ use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
 use crate::setpoint::profile::Profile;
 use crate::setpoint::trajectory::{QueueError, Trajectory};
-use crate::units::Command;
+use crate::units::{Command, Position};
 
 /// What a tick takes in.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,7 @@ pub struct Axis {
     /// The tick that comes next.
     tick: u32,
     enabled: bool,
+    outputs: Outputs,
 }
 
 impl Axis {
@@ -70,41 +71,48 @@ impl Axis {
             config,
             tick: 0,
             enabled: false,
+            outputs: Outputs::default(),
         }
     }
 
     /// One tick. Bounded time, no allocation, no panic; call once per sample, in order.
-    pub fn step(&mut self, inputs: &Inputs<'_>) -> Outputs {
+    pub fn step(&mut self, inputs: &Inputs<'_>) -> &Outputs {
         let tick = self.tick;
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
-        let estimate = self.estimator.update(&observation);
         let position = observation.position();
         if !(inputs.enable && self.enabled) {
-            self.trajectory.hold(position);
-            self.controller.reset();
+            self.begin(position);
         }
         self.enabled = inputs.enable;
 
-        let setpoint = self.trajectory.step(tick);
+        // Written in place: a structure of this size is not returned in registers.
+        let outputs = &mut self.outputs;
+        outputs.tick = tick;
+        outputs.count = observation.count;
+        outputs.enabled = inputs.enable;
+        outputs.estimate = self.estimator.update(&observation);
+        outputs.setpoint = self.trajectory.step(tick);
+        outputs.moving = self.trajectory.is_moving();
         let active = self.output.active_limits();
-        let demand = self.controller.step(&setpoint, position, &estimate, active);
-        let command = if inputs.enable {
+        let demand = self
+            .controller
+            .step(&outputs.setpoint, position, &outputs.estimate, active);
+        outputs.following_error = demand.following_error;
+        outputs.command = if inputs.enable {
             self.output.step(demand.command)
         } else {
             self.output.off()
         };
-        Outputs {
-            tick,
-            count: observation.count,
-            command,
-            enabled: inputs.enable,
-            moving: self.trajectory.is_moving(),
-            limits: self.output.active_limits(),
-            following_error: demand.following_error,
-            estimate,
-            setpoint,
-        }
+        outputs.limits = self.output.active_limits();
+        outputs
+    }
+
+    /// Stands where the axis is, with nothing remembered: off, or about to come under control.
+    #[cold]
+    fn begin(&mut self, position: Position) {
+        self.trajectory.hold(position);
+        self.controller.reset();
     }
 
     /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
@@ -129,6 +137,12 @@ impl Axis {
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.config = config;
+    }
+
+    /// What the last tick gave.
+    #[must_use]
+    pub const fn outputs(&self) -> &Outputs {
+        &self.outputs
     }
 
     /// The configuration in force.

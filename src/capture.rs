@@ -30,25 +30,55 @@ pub struct Observation<'a> {
     pub sampled_at: i64,
     /// Timer clocks since the previous sample; 0 in the first tick.
     pub elapsed: u32,
-    /// Timer clocks from the newest edge to the sample, if an edge came in this tick.
-    pub since_last_edge: Option<u32>,
-    /// Times of all edges of this tick as the hardware gave them, oldest first, in two parts.
-    pub edges: [&'a [u32]; 2],
     /// True where each edge's position can be inferred: as many edge times as the count moved, none lost.
     pub edges_complete: bool,
-    /// The index pulse, if it came in this tick.
-    pub index: Option<UnwrappedLatch>,
-    /// The probe, if it triggered in this tick.
-    pub probe: Option<UnwrappedLatch>,
+    capture: &'a Capture<'a>,
 }
 
-impl Observation<'_> {
+impl<'a> Observation<'a> {
     /// Position that the count alone gives: the middle of the discrete, count + ½.
     #[must_use]
     pub fn position(&self) -> Position {
         Position::from_bits(
-            self.count.wrapping_shl(Position::FRAC_NBITS) | 1 << (Position::FRAC_NBITS - 1),
+            self.count.wrapping_shl(Position::FRAC_NBITS) | (1 << (Position::FRAC_NBITS - 1)),
         )
+    }
+
+    /// Timer clocks from the newest edge to the sample, if an edge came in this tick.
+    #[must_use]
+    pub fn since_last_edge(&self) -> Option<u32> {
+        let sampled_at = self.capture.sampled_at;
+        self.capture
+            .last_edge_at
+            .map(|at| sampled_at.wrapping_sub(at))
+    }
+
+    /// Times of all edges of this tick as the hardware gave them, oldest first, in two parts.
+    #[must_use]
+    pub const fn edges(&self) -> [&'a [u32]; 2] {
+        self.capture.edges
+    }
+
+    /// The index pulse, if it came in this tick.
+    #[must_use]
+    pub fn index(&self) -> Option<UnwrappedLatch> {
+        self.capture.index.map(|latch| self.unwrap_latch(latch))
+    }
+
+    /// The probe, if it triggered in this tick.
+    #[must_use]
+    pub fn probe(&self) -> Option<UnwrappedLatch> {
+        self.capture.probe.map(|latch| self.unwrap_latch(latch))
+    }
+
+    /// A latch lies before the sample just taken, by less than half the range of either counter.
+    fn unwrap_latch(&self, latch: Latch) -> UnwrappedLatch {
+        let back = self.capture.count.wrapping_sub(latch.count).cast_signed();
+        let age = self.capture.sampled_at.wrapping_sub(latch.time);
+        UnwrappedLatch {
+            count: self.count.wrapping_sub(i64::from(back)),
+            time: self.sampled_at.wrapping_sub(i64::from(age)),
+        }
     }
 }
 
@@ -89,11 +119,10 @@ impl Unwrapper {
     }
 
     /// Unwraps one capture. Two captures may lie at most 2³¹ − 1 counts and 2³² − 1 timer clocks apart.
-    pub fn unwrap<'a>(&mut self, capture: &Capture<'a>) -> Observation<'a> {
+    #[inline]
+    pub fn unwrap<'a>(&mut self, capture: &'a Capture<'a>) -> Observation<'a> {
         if !self.primed {
-            self.primed = true;
-            self.count = i64::from(capture.count.cast_signed());
-            self.time = i64::from(capture.sampled_at);
+            self.prime(capture);
         }
         // The low words of the 64-bit totals are the previous readings themselves.
         let moved = capture.count.wrapping_sub(self.count as u32).cast_signed();
@@ -103,43 +132,47 @@ impl Unwrapper {
 
         let [older, newer] = capture.edges;
         let edge_times = older.len().wrapping_add(newer.len());
-        let explained = edge_times == moved.unsigned_abs() as usize;
-        self.note_health(capture, moved, edge_times != 0 && !explained);
-
-        Observation {
+        let mut observation = Observation {
             count: self.count,
-            delta: moved.clamp(-MAX_DELTA, MAX_DELTA),
+            delta: moved,
             sampled_at: self.time,
             elapsed,
-            since_last_edge: capture
-                .last_edge_at
-                .map(|at| capture.sampled_at.wrapping_sub(at)),
-            edges: capture.edges,
-            edges_complete: explained && !capture.overrun,
-            index: capture.index.map(|latch| self.unwrap_latch(latch)),
-            probe: capture.probe.map(|latch| self.unwrap_latch(latch)),
+            edges_complete: edge_times == moved.unsigned_abs() as usize,
+            capture,
+        };
+        // One branch for all that should not be.
+        let trouble = u32::from(capture.illegal) | u32::from(capture.overrun);
+        let ambiguous = edge_times != 0 && !observation.edges_complete;
+        if trouble != 0 || ambiguous || moved.unsigned_abs() > MAX_DELTA.unsigned_abs() {
+            self.note_trouble(&mut observation, ambiguous);
         }
+        observation
     }
 
-    fn note_health(&mut self, capture: &Capture<'_>, moved: i32, ambiguous: bool) {
+    #[cold]
+    #[inline(never)]
+    fn prime(&mut self, capture: &Capture<'_>) {
+        self.primed = true;
+        self.count = i64::from(capture.count.cast_signed());
+        self.time = i64::from(capture.sampled_at);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn note_trouble(&mut self, observation: &mut Observation<'_>, ambiguous: bool) {
+        let Capture {
+            illegal, overrun, ..
+        } = *observation.capture;
+        let moved = observation.delta;
+        observation.delta = moved.clamp(-MAX_DELTA, MAX_DELTA);
+        observation.edges_complete &= !overrun;
+
         let health = &mut self.health;
-        health.illegal = health.illegal.saturating_add(u32::from(capture.illegal));
-        health.overrun_ticks = health
-            .overrun_ticks
-            .saturating_add(u32::from(capture.overrun));
+        let overspeed = observation.delta != moved;
+        health.illegal = health.illegal.saturating_add(u32::from(illegal));
+        health.overrun_ticks = health.overrun_ticks.saturating_add(u32::from(overrun));
         health.ambiguous_ticks = health.ambiguous_ticks.saturating_add(u32::from(ambiguous));
-        let overspeed = moved.unsigned_abs() > MAX_DELTA.unsigned_abs();
         health.overspeed_ticks = health.overspeed_ticks.saturating_add(u32::from(overspeed));
-    }
-
-    /// A latch lies before the sample just taken, by less than half the range of either counter.
-    fn unwrap_latch(&self, latch: Latch) -> UnwrappedLatch {
-        let back = (self.count as u32).wrapping_sub(latch.count).cast_signed();
-        let age = (self.time as u32).wrapping_sub(latch.time);
-        UnwrappedLatch {
-            count: self.count.wrapping_sub(i64::from(back)),
-            time: self.time.wrapping_sub(i64::from(age)),
-        }
     }
 }
 
@@ -157,7 +190,8 @@ mod tests {
 
     #[test]
     fn the_first_capture_is_the_origin() {
-        let first = Unwrapper::new().unwrap(&at(u32::MAX, 77));
+        let capture = at(u32::MAX, 77);
+        let first = Unwrapper::new().unwrap(&capture);
         assert_eq!(
             (first.count, first.delta, first.sampled_at, first.elapsed),
             (-1, 0, 77, 0)
@@ -169,10 +203,12 @@ mod tests {
     fn both_counters_wrap_both_ways() {
         let mut unwrapper = Unwrapper::new();
         unwrapper.unwrap(&at(0x7fff_fffe, 0xffff_ff00));
-        let over = unwrapper.unwrap(&at(0x8000_0002, 0x100));
+        let capture = at(0x8000_0002, 0x100);
+        let over = unwrapper.unwrap(&capture);
         assert_eq!((over.delta, over.count), (4, 0x8000_0002));
         assert_eq!((over.elapsed, over.sampled_at), (0x200, 0x1_0000_0100));
-        let back = unwrapper.unwrap(&at(0x7fff_ffff, 0x200));
+        let capture = at(0x7fff_ffff, 0x200);
+        let back = unwrapper.unwrap(&capture);
         assert_eq!((back.delta, back.count), (-3, 0x7fff_ffff));
     }
 
@@ -182,7 +218,8 @@ mod tests {
         unwrapper.unwrap(&at(0, 0));
         let stride = 0x4000_0001_u32;
         for turn in 1..=1000_u32 {
-            let seen = unwrapper.unwrap(&at(stride.wrapping_mul(turn), stride.wrapping_mul(turn)));
+            let capture = at(stride.wrapping_mul(turn), stride.wrapping_mul(turn));
+            let seen = unwrapper.unwrap(&capture);
             assert_eq!(seen.count, i64::from(stride) * i64::from(turn));
             assert_eq!(seen.sampled_at, i64::from(stride) * i64::from(turn));
             assert_eq!(seen.delta, MAX_DELTA);
@@ -203,7 +240,7 @@ mod tests {
         };
         let seen = unwrapper.unwrap(&forward);
         assert!(seen.edges_complete);
-        assert_eq!(seen.since_last_edge, Some(3));
+        assert_eq!(seen.since_last_edge(), Some(3));
         let reversal = Capture {
             edges,
             ..at(14, 20)
@@ -233,21 +270,22 @@ mod tests {
             time: 0xffff_fffd,
         });
         let probe = Some(Latch { count: 3, time: 2 });
-        let seen = unwrapper.unwrap(&Capture {
+        let capture = Capture {
             index,
             probe,
             ..at(4, 4)
-        });
+        };
+        let seen = unwrapper.unwrap(&capture);
         assert_eq!(seen.count, 4);
         assert_eq!(
-            seen.index,
+            seen.index(),
             Some(UnwrappedLatch {
                 count: -2,
                 time: 0xffff_fffd
             })
         );
         assert_eq!(
-            seen.probe,
+            seen.probe(),
             Some(UnwrappedLatch {
                 count: 3,
                 time: 0x1_0000_0002

@@ -91,16 +91,23 @@ impl Output {
         let Config { limit, slew } = self.config;
         let demand = demand.to_bits();
         let in_range = bounded(demand, limit.wrapping_neg(), limit);
-        // Where the ends of the window saturate, at ±2, they lie beyond the largest limit anyway.
+        // Where an end of the window saturates it is beyond any limit.
         let lowest = self.command.saturating_sub(slew);
         let highest = self.command.saturating_add(slew);
         let command = bounded(in_range, lowest, highest);
-        self.active = ActiveLimits {
-            high: demand > command,
-            low: demand < command,
-            slew: in_range != command,
-        };
         self.command = command;
+        self.active = ActiveLimits {
+            high: false,
+            low: false,
+            slew: false,
+        };
+        if command != demand {
+            self.active = ActiveLimits {
+                high: demand > command,
+                low: demand < command,
+                slew: in_range != command,
+            };
+        }
         Command::from_bits(command)
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::controller::config::Gains;
-use crate::estimator::EstimatorConfig;
+use crate::estimator::{EstimatorConfig, Lags};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
@@ -145,20 +145,24 @@ impl AxisParams {
     /// [`ParamError`] naming the first parameter that is wrong, its value and the allowed range.
     pub fn validate(&self) -> Result<AxisConfig, ParamError> {
         checked("timer_hz", self.timer_hz, TIMER_HZ.0, TIMER_HZ.1)?;
+        // Before anything is converted: conversions have their own, more general names.
+        self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         Ok(AxisConfig {
             estimator: self.estimator,
             limits: self.motion.limits(scale)?,
-            controller: self.controller.quantise(scale, full_velocity)?,
+            controller: self
+                .controller
+                .quantise(scale, full_velocity, &self.estimator.lags())?,
             output: self.output.quantise(scale)?,
         })
     }
 }
 
 impl MotionParams {
+    /// Limits of motion; the table has been checked.
     fn limits(&self, scale: AxisScale) -> Result<Limits, ParamError> {
-        self.check()?;
         let Self {
             max_feed_mm_per_min,
             full_command_feed_mm_per_min,
@@ -179,11 +183,12 @@ impl MotionParams {
 }
 
 impl ControllerParams {
-    /// Gains per d and tick; `full_velocity` is the speed at full command, d/tick.
+    /// Gains per d and tick; `full_velocity` is the speed at full command, d/tick, `lags` are the estimator's.
     fn quantise(
         &self,
         scale: AxisScale,
         full_velocity: f64,
+        lags: &Lags,
     ) -> Result<controller::Config, ParamError> {
         self.check()?;
         let rate = scale.tick_hz();
@@ -201,6 +206,7 @@ impl ControllerParams {
         let transfer_ticks = (self.transfer_time_s * rate).max(1.0);
         Ok(controller::Config::new(
             &gains,
+            lags,
             deadband_d,
             self.bias,
             transfer_ticks,

@@ -11,12 +11,12 @@
 //! | velocity, d/tick | [`Velocity`] | ±2 048 | 9.5e-7 |
 //! | acceleration, d/tick² | [`Acceleration`] | ±128 | 6.0e-8 |
 //! | jerk, d/tick³ | [`Jerk`] | ±4 | 1.9e-9 |
-//! | lag, ticks | [`Lag`] | 0 … 65 536 | 1.5e-5 |
+//! | lag, ticks | [`Lag`] | ±32 768 | 1.5e-5 |
 //! | command, fraction of full | [`Command`] | ±2 (limited to ±1) | 9.3e-10 |
 
 use core::fmt;
 
-use fixed::types::{I2F30, I3F29, I8F24, I12F20, I48F16, U16F16};
+use fixed::types::{I2F30, I3F29, I8F24, I12F20, I16F16, I48F16};
 
 /// Position in d.
 pub type Position = I48F16;
@@ -27,7 +27,7 @@ pub type Acceleration = I8F24;
 /// Jerk in d/tick³, as the feedforward sees it; a trajectory keeps its own finer state.
 pub type Jerk = I3F29;
 /// Lag of an estimate behind the sampling instant, in ticks.
-pub type Lag = U16F16;
+pub type Lag = I16F16;
 /// Drive command in fractions of full command: ±1 is ±10 V.
 pub type Command = I2F30;
 

@@ -13,6 +13,10 @@ use crate::tick::Control;
 
 /// What thread mode asks of the axis; one request is taken a tick, before its step.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a queue of them is a static, and there is no heap"
+)]
 pub enum Request {
     /// Puts the axis under control, or takes it out.
     Enable(bool),
@@ -53,14 +57,12 @@ impl<E> AxisControl<E> {
     fn take_request(&mut self) {
         match self.requests.dequeue() {
             Some(Request::Enable(enable)) => self.enable = enable,
-            Some(Request::Move { profile, start }) => {
-                if self.axis.queue(&profile, start).is_err() {
-                    let refused = self.refused.load(Ordering::Relaxed);
-                    self.refused
-                        .store(refused.wrapping_add(1), Ordering::Relaxed);
-                }
+            Some(Request::Move { profile, start }) if self.axis.queue(&profile, start).is_err() => {
+                let refused = self.refused.load(Ordering::Relaxed);
+                self.refused
+                    .store(refused.wrapping_add(1), Ordering::Relaxed);
             }
-            None => {}
+            Some(Request::Move { .. }) | None => {}
         }
     }
 }
@@ -77,12 +79,10 @@ impl<E: Encoder> Control for AxisControl<E> {
             enable: self.enable,
         };
         let outputs = self.axis.step(&inputs);
-        let record = Record::new(&outputs);
-        (outputs, record)
+        (*outputs, Record::new(outputs))
     }
 
     fn missed(&mut self) -> (Outputs, Record) {
-        let outputs = Outputs::default();
-        (outputs, Record::new(&outputs))
+        (Outputs::default(), Record::default())
     }
 }

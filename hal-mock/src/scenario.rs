@@ -195,7 +195,7 @@ impl Simulation {
             capture: self.machine.capture(),
             enable: true,
         };
-        self.outputs = self.axis.step(&inputs);
+        self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &self.outputs);
         self.tick += 1;
         self.queue_next_move()?;

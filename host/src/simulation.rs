@@ -134,7 +134,8 @@ impl Listening {
     }
 
     fn hear(&mut self, machine: &Machine) {
-        let observation = self.unwrapper.unwrap(&machine.capture());
+        let capture = machine.capture();
+        let observation = self.unwrapper.unwrap(&capture);
         for (estimator, listener) in self.estimators.iter_mut().zip(&mut self.listeners) {
             listener.estimates.push(estimator.update(&observation));
         }

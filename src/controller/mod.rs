@@ -8,7 +8,8 @@
 //! ```
 //!
 //! An estimate holds for an instant `lag` ticks ago, so the links compare it with the setpoint of that
-//! instant: v_ref = v − lag_v·a + lag_v²·j/2, a_ref = a − lag_a·j.
+//! instant: v_ref = v − lag_v·a + lag_v²·j/2, a_ref = a − lag_a·j. Since the lags of an estimator are
+//! known beforehand, [`Config`] folds them into the weights of a and j.
 //!
 //! At enable and at a change of parameters the law would jump; the jump is taken up by `transfer`,
 //! which then decays geometrically, so the output stays continuous. Integration stops while the output
@@ -23,7 +24,7 @@ pub use config::Config;
 use crate::estimator::Estimate;
 use crate::output::ActiveLimits;
 use crate::setpoint::Setpoint;
-use crate::units::{Acceleration, Command, Jerk, Lag, Position, Velocity};
+use crate::units::{Command, Position};
 
 use crate::estimator::saturate;
 use config::INTEGRAL_SHIFT;
@@ -101,51 +102,26 @@ impl Controller {
             self.fresh = false;
             self.previous_error = error;
         }
-        let signals = self.signals(setpoint, estimate, error);
+        let signals = [
+            error,
+            error.saturating_sub(self.previous_error),
+            estimate.velocity.to_bits(),
+            estimate.acceleration.to_bits(),
+            setpoint.velocity.to_bits(),
+            setpoint.acceleration.to_bits(),
+            setpoint.jerk.to_bits(),
+        ];
         self.previous_error = error;
         self.previous_following_error = following_error.to_bits();
         self.integrate(error, active);
 
-        let law = saturate(
-            self.config
-                .weigh(&signals)
-                .wrapping_add(self.integral.wrapping_shr(INTEGRAL_SHIFT)),
-        );
+        let integral = self.integral.wrapping_shr(INTEGRAL_SHIFT);
+        let law = saturate(self.config.weigh(&signals).wrapping_add(integral));
         let command = self.without_jump(law);
         Demand {
             command: Command::from_bits(command),
             following_error,
         }
-    }
-
-    /// The inputs of the law in the order of [`config::Gains`], each in its own format.
-    fn signals(
-        &self,
-        setpoint: &Setpoint,
-        estimate: &Estimate,
-        error: i32,
-    ) -> [i32; config::TERMS] {
-        let jerk = setpoint.jerk.to_bits();
-        let acceleration = setpoint.acceleration.to_bits();
-        let velocity = setpoint.velocity.to_bits();
-        let lag_v = estimate.lags.velocity;
-        let half_way =
-            acceleration.saturating_sub(over_lag::<JERK_TO_ACCELERATION>(jerk, lag_v) >> 1);
-        let velocity_then =
-            velocity.saturating_sub(over_lag::<ACCELERATION_TO_VELOCITY>(half_way, lag_v));
-        let acceleration_then = acceleration.saturating_sub(over_lag::<JERK_TO_ACCELERATION>(
-            jerk,
-            estimate.lags.acceleration,
-        ));
-        [
-            error,
-            error.saturating_sub(self.previous_error),
-            velocity_then.saturating_sub(estimate.velocity.to_bits()),
-            acceleration_then.saturating_sub(estimate.acceleration.to_bits()),
-            velocity,
-            acceleration,
-            jerk,
-        ]
     }
 
     /// Adds the error to the integral unless the output is at a limit and the error drives into it.
@@ -165,31 +141,20 @@ impl Controller {
     fn without_jump(&mut self, law: i32) -> i32 {
         if let Some(output) = self.start_from.take() {
             self.transfer = i64::from(output.to_bits()).wrapping_sub(i64::from(law));
-        } else {
+        } else if self.transfer != 0 {
             self.transfer = decayed(self.transfer, self.config.transfer_decay);
+        } else {
+            return law;
         }
         saturate(i64::from(law).wrapping_add(self.transfer))
     }
 }
 
-const JERK_TO_ACCELERATION: u32 = Jerk::FRAC_NBITS + Lag::FRAC_NBITS - Acceleration::FRAC_NBITS;
-const ACCELERATION_TO_VELOCITY: u32 =
-    Acceleration::FRAC_NBITS + Lag::FRAC_NBITS - Velocity::FRAC_NBITS;
-
-/// What a rate of change adds up to over a lag, brought to the format `SHIFT` bits coarser; saturates.
-fn over_lag<const SHIFT: u32>(rate: i32, lag: Lag) -> i32 {
-    saturate(
-        i64::from(rate)
-            .wrapping_mul(i64::from(lag.to_bits()))
-            .wrapping_shr(SHIFT),
-    )
-}
-
 /// `value`·`factor`/2³¹ rounded towards zero, so that it ends at zero; |value| < 2³².
-fn decayed(value: i64, factor: i32) -> i64 {
+fn decayed(value: i64, factor: u32) -> i64 {
     let magnitude = value.unsigned_abs() as u32;
     let left = u64::from(magnitude)
-        .wrapping_mul(u64::from(factor.unsigned_abs()))
+        .wrapping_mul(u64::from(factor))
         .wrapping_shr(31)
         .cast_signed();
     if value < 0 { left.wrapping_neg() } else { left }

@@ -44,13 +44,38 @@ pub struct Trajectory {
     velocity: i64,
     /// Acceleration in 2⁻⁴⁸ d/tick²; always even.
     acceleration: i64,
-    segment: Segment,
+    phase: Phase,
     next_segment: usize,
     /// The profile that runs and the one that waits; they change places at the start of a move.
     profiles: [Profile; 2],
     running: usize,
     remaining_ticks: u32,
     waiting_start: Option<u32>,
+}
+
+/// The segment that runs, as what it adds in a tick.
+#[derive(Clone, Copy, Debug, Default)]
+struct Phase {
+    remaining_ticks: u32,
+    /// The jerk as the feedforward sees it.
+    jerk: Jerk,
+    /// j/6 and the creep of the move.
+    position_step: i64,
+    /// j/2.
+    half_jerk: i64,
+}
+
+impl Phase {
+    fn new(segment: Segment, creep: i64) -> Self {
+        let sixth = segment.jerk_sixth;
+        let jerk = sixth.wrapping_mul(6);
+        Self {
+            remaining_ticks: segment.ticks,
+            jerk: Jerk::from_bits(rounded::<{ STATE_FRAC - Jerk::FRAC_NBITS }>(jerk) as i32),
+            position_step: sixth.wrapping_add(creep),
+            half_jerk: sixth.wrapping_mul(3),
+        }
+    }
 }
 
 impl Trajectory {
@@ -66,7 +91,7 @@ impl Trajectory {
             i128::from(position.to_bits()).wrapping_shl(STATE_FRAC - Position::FRAC_NBITS);
         self.velocity = 0;
         self.acceleration = 0;
-        self.segment = Segment::default();
+        self.phase = Phase::default();
         self.remaining_ticks = 0;
         self.waiting_start = None;
     }
@@ -110,19 +135,17 @@ impl Trajectory {
     }
 
     fn advance(&mut self) {
-        let sixth = self.segment.jerk_sixth;
-        let creep = self
-            .profiles
-            .get(self.running)
-            .map_or(0, |profile| profile.creep);
+        let Phase {
+            position_step,
+            half_jerk,
+            ..
+        } = self.phase;
         let half_acceleration = self.acceleration.wrapping_shr(1);
         let step = self
             .velocity
             .wrapping_add(half_acceleration)
-            .wrapping_add(sixth)
-            .wrapping_add(creep);
+            .wrapping_add(position_step);
         self.position = self.position.wrapping_add(i128::from(step));
-        let half_jerk = sixth.wrapping_mul(3);
         self.velocity = self
             .velocity
             .wrapping_add(self.acceleration)
@@ -130,18 +153,26 @@ impl Trajectory {
         self.acceleration = self.acceleration.wrapping_add(half_jerk.wrapping_mul(2));
 
         self.remaining_ticks = self.remaining_ticks.wrapping_sub(1);
-        self.segment.ticks = self.segment.ticks.wrapping_sub(1);
+        self.phase.remaining_ticks = self.phase.remaining_ticks.wrapping_sub(1);
+        if self.phase.remaining_ticks == 0 {
+            self.end_phase();
+        }
+    }
+
+    #[cold]
+    fn end_phase(&mut self) {
         if self.remaining_ticks == 0 {
             // Less than one unit a tick of the creep is still missing: at most half an LSB of the output,
             // after the longest move of all. The last ramp's step of acceleration ends here.
             self.position = self.target;
             self.acceleration = 0;
-            self.segment = Segment::default();
-        } else if self.segment.ticks == 0 {
+            self.phase = Phase::default();
+        } else {
             self.enter_segment(self.next_segment);
         }
     }
 
+    #[cold]
     fn start(&mut self) {
         self.waiting_start = None;
         self.running ^= 1;
@@ -155,33 +186,23 @@ impl Trajectory {
     }
 
     fn enter_segment(&mut self, index: usize) {
-        let segments = self
-            .profiles
-            .get(self.running)
-            .map(|profile| &profile.segments);
-        self.segment = segments
-            .and_then(|table| table.get(index))
-            .copied()
-            .unwrap_or_default();
-        self.acceleration = self
-            .acceleration
-            .wrapping_add(self.segment.acceleration_step);
+        if let Some(profile) = self.profiles.get(self.running) {
+            let segment = profile.segments.get(index).copied().unwrap_or_default();
+            self.phase = Phase::new(segment, profile.creep);
+            self.acceleration = self.acceleration.wrapping_add(segment.acceleration_step);
+        }
         self.next_segment = index.wrapping_add(1);
     }
 
     fn setpoint(&self) -> Setpoint {
         let position = rounded_to::<{ STATE_FRAC - Position::FRAC_NBITS }>(self.position);
+        let velocity = rounded::<{ STATE_FRAC - Velocity::FRAC_NBITS }>(self.velocity);
+        let acceleration = rounded::<{ STATE_FRAC - Acceleration::FRAC_NBITS }>(self.acceleration);
         Setpoint {
             position: Position::from_bits(position),
-            velocity: Velocity::from_bits(rounded::<{ STATE_FRAC - Velocity::FRAC_NBITS }>(
-                self.velocity,
-            ) as i32),
-            acceleration: Acceleration::from_bits(
-                rounded::<{ STATE_FRAC - Acceleration::FRAC_NBITS }>(self.acceleration) as i32,
-            ),
-            jerk: Jerk::from_bits(rounded::<{ STATE_FRAC - Jerk::FRAC_NBITS }>(
-                self.segment.jerk_sixth.wrapping_mul(6),
-            ) as i32),
+            velocity: Velocity::from_bits(velocity as i32),
+            acceleration: Acceleration::from_bits(acceleration as i32),
+            jerk: self.phase.jerk,
         }
     }
 }

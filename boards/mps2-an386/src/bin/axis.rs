@@ -357,11 +357,11 @@ impl Sink for Trace {
 
     fn progress(&mut self, counts: &Counts) {
         defmt::info!(
-            "tick {=u32} at {=u64} us: count {=i32}, velocity {=i32} d/s, late {=u32}",
+            "tick {=u32} at {=u64} us: count {=i32}, velocity {=i32} d/tick, late {=u32}",
             counts.ticks,
             Instant::now().as_micros(),
             self.last.count.cast_signed(),
-            self.last.velocity >> 10,
+            self.last.velocity >> 20,
             counts.late
         );
     }

@@ -63,7 +63,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
                 let next = &script.moves[tick as usize % 2];
                 let _ = axis.queue(&next.profile, tick + 1 + dice.roll() % 4);
             }
-            samples.push(counter.count(|| Record::new(&axis.step(&inputs))));
+            samples.push(counter.count(|| Record::new(axis.step(&inputs))));
         }
         samples.log("adversary");
     }
@@ -117,12 +117,15 @@ fn edge(counter: &mut Counter) -> Result<(), ScenarioError> {
                 capture: full,
                 enable: true,
             })
+            .command
         });
         let cheap = counter.count(|| {
-            without.step(&Inputs {
-                capture: bare,
-                enable: true,
-            })
+            without
+                .step(&Inputs {
+                    capture: bare,
+                    enable: true,
+                })
+                .command
         });
         samples.push(dear.saturating_sub(cheap) / EDGES as u32);
     }

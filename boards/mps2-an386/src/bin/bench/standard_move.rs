@@ -1,6 +1,7 @@
 //! Every stage, and the whole step with each estimator, over the moving ticks of the standard move.
 
 use board_mps2_an386::instructions::Counter;
+use heapless::spsc::Queue;
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder;
@@ -22,8 +23,12 @@ struct Table {
     stages: StageSamples,
     steps: [Samples; 4],
     record: Samples,
+    queue: Samples,
     machine: Samples,
 }
+
+/// The way out of the tick, as the firmware has it.
+static RECORDS: ConstStaticCell<Queue<Record, 4>> = ConstStaticCell::new(Queue::new());
 
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Table {
     stages: StageSamples::new(),
@@ -34,6 +39,7 @@ static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Table {
         Samples::of(ESTIMATORS[3]),
     ],
     record: Samples::of("record"),
+    queue: Samples::of("queue"),
     machine: Samples::of("machine"),
 });
 
@@ -66,6 +72,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     let mut staged = Staged::new(&loop_config, estimators);
     let mut machine = Machine::new(&MachineParams::z_16k20f3(), TICK_HZ, SEED)?;
     let mut applied = Outputs::default();
+    let (mut records, mut taken) = RECORDS.take().split();
     let mut moves = script.moves.iter().peekable();
     for tick in 0..script.ticks {
         if let Some(next) = moves.next_if(|next| next.start == tick) {
@@ -80,23 +87,23 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
             capture,
             enable: true,
         };
-        let mut record = 0;
+        let (mut record, mut queued) = (0, 0);
         let mut steps = [0; 4];
         for (index, axis) in axes.iter_mut().flatten().enumerate() {
-            let mut outputs = Outputs::default();
-            steps[index] = counter.count(|| {
-                outputs = axis.step(&inputs);
-                Record::new(&outputs)
-            });
+            steps[index] = counter.count(|| Record::new(axis.step(&inputs)));
+            let outputs = *axis.outputs();
             if index == IN_LOOP {
                 record = counter.count(|| Record::new(&outputs));
+                queued = counter.count(|| records.enqueue(Record::new(&outputs)));
                 applied = outputs;
             }
+            taken.dequeue();
         }
         let samples = applied.moving.then_some(&mut table.stages);
         staged.step(tick, &capture, counter, samples);
         if applied.moving {
             table.record.push(record);
+            table.queue.push(queued.saturating_sub(record));
             table.machine.push(moved);
             for (samples, count) in table.steps.iter_mut().zip(steps) {
                 samples.push(count);
@@ -105,6 +112,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     }
     table.stages.log();
     table.record.log("telemetry");
+    table.queue.log("telemetry");
     table
         .steps
         .iter_mut()
