@@ -1,50 +1,180 @@
-//! The axis on the simulated machine.
+//! The axis on the simulated machine: reported, encoder and true position, from enable to rest.
 
-use leadscrew::axis::{Axis, Outputs};
+use leadscrew::axis::Outputs;
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, Script, Simulation};
+use leadscrew_hal_mock::machine::{MachineParams, Truth};
+use leadscrew_hal_mock::scenario::{MoveAndBack, Simulation};
 
-fn simulation(machine: &MachineParams, scenario: &MoveAndBack, estimator: &str) -> Simulation {
+/// A tick of a run.
+struct Tick {
+    outputs: Outputs,
+    truth: Truth,
+}
+
+struct Run {
+    ticks: Vec<Tick>,
+    digest: u64,
+    health: leadscrew::capture::CaptureHealth,
+}
+
+fn bare() -> MachineParams {
+    MachineParams::z_16k20f3().bare()
+}
+
+fn run(machine: &MachineParams, scenario: &MoveAndBack, estimator: &str, seed: u64) -> Run {
     let estimator = EstimatorConfig::by_name(estimator).unwrap().unwrap();
-    let params = scenario.axis_params(machine, estimator).unwrap();
-    let config = params.validate().unwrap();
-    let script = Script::new(scenario, params.motion.counts_per_mm, &config).unwrap();
-    Simulation::new(
-        Machine::new(machine, scenario.tick_hz, 1).unwrap(),
-        Axis::new(config),
-        script,
-    )
+    let mut simulation = Simulation::prepare(scenario, machine, estimator, seed).unwrap();
+    let mut ticks = Vec::new();
+    while let Some(outputs) = simulation.step().unwrap() {
+        ticks.push(Tick {
+            outputs,
+            truth: simulation.machine.truth(),
+        });
+    }
+    Run {
+        ticks,
+        digest: simulation.digest(),
+        health: simulation.axis.capture_health(),
+    }
+}
+
+impl Run {
+    fn peak(&self, figure: impl Fn(&Tick) -> f64) -> f64 {
+        self.ticks
+            .iter()
+            .map(|tick| figure(tick).abs())
+            .fold(0.0, f64::max)
+    }
+
+    fn following_error_peak(&self) -> f64 {
+        self.peak(|tick| tick.outputs.following_error.to_num())
+    }
+
+    fn last(&self) -> &Tick {
+        self.ticks.last().unwrap()
+    }
+}
+
+/// What holds in every run, whatever the machine.
+fn assert_sound(run: &Run) {
+    let first = &run.ticks[0].outputs;
+    assert!(first.enabled);
+    assert_eq!(first.command.to_bits(), 0, "no kick on enable");
+    assert!(run.peak(|tick| tick.outputs.command.to_num()) <= 1.0);
+    let last = &run.last().outputs;
+    assert_eq!(
+        last.setpoint.position, first.setpoint.position,
+        "exact return"
+    );
+    assert_eq!(last.setpoint.velocity.to_bits(), 0);
+    assert_eq!(last.setpoint.acceleration.to_bits(), 0);
+    assert_eq!(run.health, leadscrew::capture::CaptureHealth::default());
 }
 
 #[test]
-fn smoke() {
-    for (name, machine) in [
-        ("bare", MachineParams::z_16k20f3().bare()),
-        ("full", MachineParams::z_16k20f3()),
-    ] {
-        for hz in [1000.0, 2500.0] {
-            for est in EstimatorConfig::NAMES {
-                let mut sim = simulation(&machine, &MoveAndBack::standard(hz), est);
-                let mut peak = 0.0_f64;
-                let mut rms = 0.0;
-                let mut last = Outputs::default();
-                while let Some(out) = sim.step().unwrap() {
-                    let e: f64 = out.following_error.to_num();
-                    peak = peak.max(e.abs());
-                    rms += e * e;
-                    last = out;
-                }
-                println!(
-                    "{name} {hz} {est}: ticks {} peak {peak:.2} rms {:.2} end {:.2} count {} digest {:016x} {:?}",
-                    sim.ticks(),
-                    (rms / f64::from(sim.ticks())).sqrt(),
-                    last.following_error,
-                    last.count,
-                    sim.digest(),
-                    sim.axis.capture_health()
-                );
-            }
-        }
+fn the_bare_machine_follows_within_a_dozen_discretes() {
+    for (estimator, bound) in [("exponential", 12.0), ("simple", 12.0), ("gaussian", 12.0)] {
+        let run = run(&bare(), &MoveAndBack::standard(1000.0), estimator, 1);
+        assert_sound(&run);
+        let peak = run.following_error_peak();
+        assert!(peak < bound, "{estimator}: {peak} d");
+        // The dwell of 0.2 s is seven time constants of the loop.
+        assert!(
+            run.last().outputs.count.abs() <= 2,
+            "{estimator}: {}",
+            run.last().outputs.count
+        );
     }
+}
+
+#[test]
+fn the_full_machine_arrives_and_stays_within_its_friction() {
+    for tick_hz in [1000.0, 2500.0] {
+        let run = run(
+            &MachineParams::z_16k20f3(),
+            &MoveAndBack::standard(tick_hz),
+            "simple",
+            1,
+        );
+        assert_sound(&run);
+        // Untuned for offset, delay, dead time and friction: a twentieth of a revolution at most.
+        let peak = run.following_error_peak();
+        assert!(peak < 500.0, "{tick_hz} Hz: {peak} d");
+        assert!(
+            run.last().outputs.count.abs() <= 60,
+            "{tick_hz} Hz: {}",
+            run.last().outputs.count
+        );
+    }
+}
+
+#[test]
+fn reported_encoder_and_true_position_agree_to_what_lies_between_them() {
+    let run = run(
+        &MachineParams::z_16k20f3(),
+        &MoveAndBack::standard(1000.0),
+        "exponential",
+        1,
+    );
+    // Encoder against shaft: the errors of the disc (1.5 + 0.3 d and the lines) and half a discrete.
+    let encoder = run.peak(|tick| tick.outputs.count as f64 + 0.5 - tick.truth.shaft.position);
+    assert!(
+        (1.5..3.5).contains(&encoder),
+        "encoder is off by {encoder} d"
+    );
+    // Reported against encoder: the lag of the position, at 150 d/tick.
+    let reported = run.peak(|tick| {
+        let estimate = &tick.outputs.estimate;
+        let now = estimate.position.to_num::<f64>()
+            + estimate.velocity.to_num::<f64>() * estimate.lags.position.to_num::<f64>();
+        now - tick.outputs.count as f64 - 0.5
+    });
+    // A quadratic motion adds a·lag·(lag + 1)/2·…: 0.9 d/tick² over 5 ticks.
+    assert!(reported < 30.0, "reported is off by {reported} d");
+    // Carriage against shaft: 8 d of screw error over 300 mm, 2 d a revolution, and compliance.
+    let carriage = run.peak(|tick| tick.truth.carriage.position - tick.truth.shaft.position);
+    assert!(
+        (9.0..40.0).contains(&carriage),
+        "carriage is off by {carriage} d"
+    );
+}
+
+#[test]
+fn a_run_is_repeated_bit_for_bit_and_its_seed_matters() {
+    let scenario = MoveAndBack {
+        move_mm: 5.0,
+        ..MoveAndBack::standard(1000.0)
+    };
+    let machine = MachineParams::z_16k20f3();
+    let digest = |seed| run(&machine, &scenario, "exponential", seed).digest;
+    assert_eq!(digest(1), digest(1));
+    assert_ne!(digest(1), digest(2));
+}
+
+#[test]
+fn a_wrong_machine_is_seen_in_the_following_error() {
+    let mut slow = bare();
+    slow.drive.full_command_feed_mm_per_min *= 0.8;
+    let scenario = MoveAndBack {
+        feed_mm_per_min: 6000.0,
+        ..MoveAndBack::standard(1000.0)
+    };
+    let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
+    // Tuned on the nominal machine, run on the slow one.
+    let params = scenario.axis_params(&bare(), estimator).unwrap();
+    let config = params.validate().unwrap();
+    let counts = params.motion.counts_per_mm;
+    let script = leadscrew_hal_mock::scenario::Script::new(&scenario, counts, &config).unwrap();
+    let machine = leadscrew_hal_mock::machine::Machine::new(&slow, 1000.0, 1).unwrap();
+    let axis = leadscrew::axis::Axis::new(config);
+    let mut simulation = Simulation::new(machine, axis, script);
+    let mut peak = 0.0_f64;
+    while let Some(outputs) = simulation.step().unwrap() {
+        peak = peak.max(outputs.following_error.to_num::<f64>().abs());
+    }
+    let nominal = run(&bare(), &scenario, "simple", 1).following_error_peak();
+    assert!(
+        peak > 5.0 * nominal && peak < 1000.0,
+        "{peak} d against {nominal} d"
+    );
 }

@@ -12,9 +12,10 @@ pub struct Config;
 
 impl Config {
     pub(super) const fn lags(&self) -> Lags {
+        const HALF: Lag = Lag::lit("0.5");
         Lags {
             position: Lag::ZERO,
-            velocity: Lag::lit("0.5"),
+            velocity: HALF,
             acceleration: Lag::ONE,
         }
     }

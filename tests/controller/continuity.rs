@@ -6,11 +6,14 @@ use leadscrew::units::Command;
 use proptest::prelude::*;
 
 use crate::seeded::seeded;
-use crate::signals::{LSB, NOT_LIMITED, controller, demand, demanded, standing};
+use crate::signals::{LSB, NOT_LIMITED, config, controller, demand, demanded, standing};
 
 /// Position gain alone; the law is then `gain·error`.
 fn proportional(position: f64) -> Gains {
-    Gains { position, ..Gains::default() }
+    Gains {
+        position,
+        ..Gains::default()
+    }
 }
 
 #[test]
@@ -23,7 +26,10 @@ fn the_first_demand_is_zero_and_the_law_is_let_in_with_the_stated_time_constant(
             let seen = demanded(&mut controller, &signals);
             let expected = 0.4 * (1.0 - (-f64::from(tick) / transfer_ticks).exp());
             // An LSB of rounding each tick, which decays with the same time constant, and that of the law.
-            assert!((seen - expected).abs() <= (transfer_ticks + 2.0) * LSB, "tick {tick}: {seen} instead of {expected}");
+            assert!(
+                (seen - expected).abs() <= (transfer_ticks + 2.0) * LSB,
+                "tick {tick}: {seen} instead of {expected}"
+            );
         }
     }
 }
@@ -35,15 +41,24 @@ fn what_is_let_in_ends_at_the_law_exactly() {
     // lose one a tick.
     let mut settled = controller(proportional(0.01), 200.0);
     demanded(&mut settled, &standing(0.0));
-    let law = (0..10_000).map(|_| demanded(&mut settled, &standing(40.0))).last().unwrap();
+    let law = (0..10_000)
+        .map(|_| demanded(&mut settled, &standing(40.0)))
+        .last()
+        .unwrap();
     let mut transferred = controller(proportional(0.01), 200.0);
-    let last = (0..10_000).map(|_| demanded(&mut transferred, &standing(40.0))).last().unwrap();
+    let last = (0..10_000)
+        .map(|_| demanded(&mut transferred, &standing(40.0)))
+        .last()
+        .unwrap();
     assert_eq!(last, law);
 }
 
 #[test]
 fn reset_starts_from_zero_again() {
-    let gains = Gains { integral: 1e-5, ..proportional(0.01) };
+    let gains = Gains {
+        integral: 1e-5,
+        ..proportional(0.01)
+    };
     let mut used = controller(gains, 10.0);
     for _ in 0..500 {
         demanded(&mut used, &standing(-25.0));
@@ -52,18 +67,34 @@ fn reset_starts_from_zero_again() {
     let mut fresh = controller(gains, 10.0);
     for tick in 0..100 {
         let signals = standing(f64::from(tick));
-        assert_eq!(demanded(&mut used, &signals), demanded(&mut fresh, &signals));
+        assert_eq!(
+            demanded(&mut used, &signals),
+            demanded(&mut fresh, &signals)
+        );
     }
 }
 
-fn config() -> impl Strategy<Value = Config> {
+fn any_config() -> impl Strategy<Value = Config> {
     let gain = || prop_oneof![Just(0.0), 0.0..0.05_f64];
-    (gain(), 0.0..1e-4_f64, gain(), 0.0..10.0_f64, -0.3..0.3_f64, 1.0..300.0_f64).prop_map(
-        |(position, integral, derivative, deadband, bias, transfer)| {
-            let gains = Gains { position, integral, derivative, ..Gains::default() };
-            Config::new(&gains, deadband, bias, transfer).unwrap()
-        },
+    (
+        gain(),
+        0.0..1e-4_f64,
+        gain(),
+        0.0..10.0_f64,
+        -0.3..0.3_f64,
+        1.0..300.0_f64,
     )
+        .prop_map(
+            |(position, integral, derivative, deadband, bias, transfer)| {
+                let gains = Gains {
+                    position,
+                    integral,
+                    derivative,
+                    ..Gains::default()
+                };
+                config(&gains, deadband, bias, transfer)
+            },
+        )
 }
 
 proptest! {
@@ -71,8 +102,8 @@ proptest! {
 
     #[test]
     fn the_demand_after_a_change_of_parameters_is_the_output_before_it(
-        before in config(),
-        after in config(),
+        before in any_config(),
+        after in any_config(),
         // Up to laws far beyond saturation.
         errors in prop::collection::vec(-3e4..3e4_f64, 1..30),
         output in -(1 << 30)..=1 << 30_i32,
@@ -97,7 +128,11 @@ fn largest_step(before: Config, after: Config) -> f64 {
         if tick == 100 {
             controller.reconfigure(after, last);
         }
-        let now = demand(&mut controller, &standing(0.125 * f64::from(tick)), NOT_LIMITED);
+        let now = demand(
+            &mut controller,
+            &standing(0.125 * f64::from(tick)),
+            NOT_LIMITED,
+        );
         // The derivative's own entry at the start of the ramp is no matter of the change.
         if tick > 50 {
             largest = largest.max((now - last).to_num::<f64>().abs());
@@ -109,18 +144,22 @@ fn largest_step(before: Config, after: Config) -> f64 {
 
 #[test]
 fn a_change_of_parameters_steps_neither_at_once_nor_in_the_tick_after() {
-    let config = |derivative, deadband| {
-        let gains = Gains { position: 1e-3, derivative, ..Gains::default() };
-        Config::new(&gains, deadband, 0.0, 50.0).unwrap()
+    let with = |derivative, deadband| {
+        let gains = Gains {
+            position: 1e-3,
+            derivative,
+            ..Gains::default()
+        };
+        config(&gains, deadband, 0.0, 50.0)
     };
     // The proportional term alone moves by 1.25e-4 a tick. The jump of the law (the derivative's share, which falls
     // from 0.0625 to 0.0125; 3 d of deadband, worth 0.003) comes in over 50 ticks: at most a fiftieth of it in one.
     let ramp = 1.25e-4;
     for (before, after, jump) in [
-        (config(0.5, 0.0), config(0.5, 0.0), ramp),
-        (config(0.5, 0.0), config(0.1, 0.0), 0.05 + ramp),
-        (config(0.5, 0.0), config(0.5, 3.0), 0.003 + ramp),
-        (config(0.5, 3.0), config(0.5, 0.0), 0.003 + ramp),
+        (with(0.5, 0.0), with(0.5, 0.0), ramp),
+        (with(0.5, 0.0), with(0.1, 0.0), 0.05 + ramp),
+        (with(0.5, 0.0), with(0.5, 3.0), 0.003 + ramp),
+        (with(0.5, 3.0), with(0.5, 0.0), 0.003 + ramp),
     ] {
         let largest = largest_step(before, after);
         assert!(largest <= ramp + jump / 50.0 + 3.0 * LSB, "{largest}");

@@ -3,120 +3,86 @@
 use leadscrew::controller::config::Gains;
 use leadscrew::controller::tuning::DriveModel;
 use leadscrew::controller::{Config, Controller};
-use leadscrew::estimator::Estimate;
+use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::params::{AxisParams, MotionParams, OutputParams};
 use leadscrew::setpoint::Setpoint;
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
+use crate::law_oracle::Oracle;
 use crate::seeded::seeded;
-use crate::signals::{LSB, Signals, controller, demanded, lags, standing};
-
-/// The law in f64, with a bound on what the fixed-point one may differ by.
-struct Oracle {
-    gains: Gains,
-    deadband: f64,
-    bias: f64,
-    transfer_ticks: f64,
-    integral: f64,
-    integral_bound: f64,
-    previous: Option<f64>,
-    transfer: f64,
-    transfer_bound: f64,
-}
-
-impl Oracle {
-    fn new(gains: Gains, deadband: f64, bias: f64, transfer_ticks: f64) -> Self {
-        let (integral, integral_bound, transfer, transfer_bound) = (0.0, 0.0, 0.0, 0.0);
-        Self { gains, deadband, bias, transfer_ticks, integral, integral_bound, previous: None, transfer, transfer_bound }
-    }
-
-    /// Demand and bound.
-    fn step(&mut self, signals: &Signals) -> (f64, f64) {
-        let behind: f64 = (signals.setpoint.position - signals.position).to_num();
-        let error = behind - behind.clamp(-self.deadband, self.deadband);
-        let change = self.previous.map_or(0.0, |previous| error - previous);
-        let first = self.previous.replace(error).is_none();
-        self.integral = (self.integral + self.gains.integral * error).clamp(-1.0, 1.0);
-        // Half a unit of the gain, 2⁻⁴⁰ per d and tick.
-        self.integral_bound += 0.5_f64.powi(41) * error.abs();
-        let (weighed, bound) = self.weighed(signals, error, change);
-        let law = (self.bias + self.integral + weighed).clamp(-2.0, 2.0);
-        // Rounding of the bias and of the sum, and the integral cut to an LSB.
-        let bound = bound + self.integral_bound + 2.0 * LSB;
-        if first {
-            (self.transfer, self.transfer_bound) = (-law, bound);
-        } else {
-            // The factor is right to 2⁻³² and the product is rounded by an LSB.
-            self.transfer_bound += self.transfer.abs() * 0.5_f64.powi(32) + LSB;
-            self.transfer *= (-1.0 / self.transfer_ticks).exp();
-        }
-        ((law + self.transfer).clamp(-2.0, 2.0), bound + self.transfer_bound)
-    }
-
-    /// The proportional terms, and what the rounding of weights and signals makes of them.
-    fn weighed(&self, signals: &Signals, error: f64, change: f64) -> (f64, f64) {
-        let Setpoint { velocity, acceleration, jerk, .. } = signals.setpoint;
-        let (velocity, acceleration, jerk): (f64, f64, f64) = (velocity.to_num(), acceleration.to_num(), jerk.to_num());
-        let lags = signals.estimate.lags;
-        let (lag_v, lag_a): (f64, f64) = (lags.velocity.to_num(), lags.acceleration.to_num());
-        let velocity_then = velocity - lag_v * acceleration + lag_v * lag_v * jerk / 2.0;
-        let acceleration_then = acceleration - lag_a * jerk;
-        let (v, a, j): (f64, f64, f64) = (Velocity::DELTA.to_num(), Acceleration::DELTA.to_num(), Jerk::DELTA.to_num());
-        let x: f64 = Position::DELTA.to_num();
-        let gains = &self.gains;
-        // Gain, signal, LSB of the signal, error of the signal: what is multiplied by a lag is cut to an LSB.
-        let terms = [
-            (gains.position, error, x, 0.0),
-            (gains.derivative, change, x, 0.0),
-            (gains.velocity, velocity_then - signals.estimate.velocity.to_num::<f64>(), v, v + lag_v * a),
-            (gains.acceleration, acceleration_then - signals.estimate.acceleration.to_num::<f64>(), a, a),
-            (gains.velocity_feedforward, velocity, v, 0.0),
-            (gains.acceleration_feedforward, acceleration, a, 0.0),
-            (gains.jerk_feedforward, jerk, j, 0.0),
-        ];
-        let total: f64 = terms.iter().map(|(gain, _, lsb, _)| gain.abs() * lsb / LSB).sum();
-        // The weights, in LSB per LSB, share the finest power of two by which they add up to less than 2³¹ − 7,
-        // so one unit is at most total/2³⁰; beyond 40 fractional bits they are not resolved.
-        let unit = (2.0 * total / (f64::from(i32::MAX) - 7.0)).max(0.5_f64.powi(40));
-        let bounds = terms.map(|(gain, signal, lsb, off)| 0.5 * unit * LSB * (signal.abs() + off) / lsb + gain.abs() * off);
-        (terms.iter().map(|(gain, signal, ..)| gain * signal).sum(), bounds.iter().sum())
-    }
-}
+use crate::signals::{LSB, NOT_LIMITED, Signals, config, controller, demanded, lags, standing};
 
 fn gain(sign: bool) -> impl Strategy<Value = f64> {
     let size = (1e-7_f64.ln()..1.0_f64.ln()).prop_map(f64::exp);
     let size = prop_oneof![1 => Just(0.0), 4 => size];
-    (size, any::<bool>()).prop_map(move |(size, negative)| if sign && negative { -size } else { size })
+    (size, any::<bool>())
+        .prop_map(move |(size, negative)| if sign && negative { -size } else { size })
 }
 
 fn gains() -> impl Strategy<Value = Gains> {
-    let integral = prop_oneof![Just(0.0), (1e-12_f64.ln()..1e-3_f64.ln()).prop_map(f64::exp)];
-    (gain(false), integral, gain(false), gain(true), gain(true), gain(false), gain(false), gain(false)).prop_map(
-        |(position, integral, derivative, velocity, acceleration, velocity_feedforward, acceleration_feedforward, jerk_feedforward)| {
-            Gains { position, integral, derivative, velocity, acceleration, velocity_feedforward, acceleration_feedforward, jerk_feedforward }
-        },
+    let integral = prop_oneof![
+        Just(0.0),
+        (1e-12_f64.ln()..1e-3_f64.ln()).prop_map(f64::exp)
+    ];
+    (
+        gain(false),
+        integral,
+        gain(false),
+        gain(true),
+        gain(true),
+        gain(false),
+        gain(false),
+        gain(false),
     )
+        .prop_map(
+            |(
+                position,
+                integral,
+                derivative,
+                velocity,
+                acceleration,
+                velocity_feedforward,
+                acceleration_feedforward,
+                jerk_feedforward,
+            )| {
+                Gains {
+                    position,
+                    integral,
+                    derivative,
+                    velocity,
+                    acceleration,
+                    velocity_feedforward,
+                    acceleration_feedforward,
+                    jerk_feedforward,
+                }
+            },
+        )
 }
 
 fn signals() -> impl Strategy<Value = Signals> {
-    let setpoint = (any::<i32>(), -200.0..200.0, -5.0..5.0, -0.5..0.5).prop_map(|(position, velocity, acceleration, jerk)| Setpoint {
-        position: Position::from_bits(i64::from(position)),
+    let setpoint = (any::<i32>(), -200.0..200.0, -5.0..5.0, -0.5..0.5).prop_map(
+        |(position, velocity, acceleration, jerk)| Setpoint {
+            position: Position::from_bits(i64::from(position)),
+            velocity: Velocity::from_num::<f64>(velocity),
+            acceleration: Acceleration::from_num::<f64>(acceleration),
+            jerk: Jerk::from_num::<f64>(jerk),
+        },
+    );
+    let estimate = (-200.0..200.0, -5.0..5.0).prop_map(|(velocity, acceleration)| Estimate {
         velocity: Velocity::from_num::<f64>(velocity),
         acceleration: Acceleration::from_num::<f64>(acceleration),
-        jerk: Jerk::from_num::<f64>(jerk),
-    });
-    let estimate = (-200.0..200.0, -5.0..5.0, 0.0..20.0, 0.0..20.0).prop_map(|(velocity, acceleration, lag_v, lag_a)| Estimate {
-        position: Position::ZERO,
-        velocity: Velocity::from_num::<f64>(velocity),
-        acceleration: Acceleration::from_num::<f64>(acceleration),
-        lags: lags(lag_v, lag_a),
+        ..Estimate::default()
     });
     // Following errors from an LSB to a thousand d.
     let behind = prop_oneof![-100..100_i64, -(1000 << 16)..1000_i64 << 16];
     (setpoint, estimate, behind).prop_map(|(setpoint, estimate, behind)| {
         let position = setpoint.position - Position::from_bits(behind);
-        Signals { setpoint, position, estimate }
+        Signals {
+            setpoint,
+            position,
+            estimate,
+        }
     })
 }
 
@@ -126,6 +92,7 @@ proptest! {
     #[test]
     fn the_law_is_the_documented_formula_within_its_rounding(
         gains in gains(),
+        (lag_v, lag_a) in (0.0..20.0_f64, 0.0..20.0_f64),
         // On the grid of positions, which the law rounds it to.
         deadband in prop_oneof![Just(0_u32), 0..20_u32 << 16],
         bias in -0.1..0.1_f64,
@@ -133,8 +100,10 @@ proptest! {
         ticks in prop::collection::vec(signals(), 1..50),
     ) {
         let deadband = f64::from(deadband) / 65_536.0;
-        let mut controller = Controller::new(Config::new(&gains, deadband, bias, transfer_ticks).unwrap());
-        let mut oracle = Oracle::new(gains, deadband, bias, transfer_ticks);
+        let lags = lags(lag_v, lag_a);
+        let config = Config::new(&gains, &lags, deadband, bias, transfer_ticks).unwrap();
+        let mut controller = Controller::new(config);
+        let mut oracle = Oracle::new(gains, lags, deadband, bias, transfer_ticks);
         for signals in &ticks {
             let (expected, bound) = oracle.step(signals);
             let seen = demanded(&mut controller, signals);
@@ -145,12 +114,15 @@ proptest! {
 
 /// The tuning of the reference machine at the bandwidth of an estimator that lags by five ticks.
 fn lathe_gains(tick_hz: f64) -> (AxisParams, Config) {
-    let drive = DriveModel { natural_period_s: 0.09, damping: 0.5 };
+    let drive = DriveModel {
+        natural_period_s: 0.09,
+        damping: 0.5,
+    };
     let params = AxisParams {
         tick_hz,
         timer_hz: 84e6,
         motion: MotionParams::default(),
-        estimator: leadscrew::estimator::EstimatorConfig::by_name("exponential").unwrap().unwrap(),
+        estimator: EstimatorConfig::by_name("exponential").unwrap().unwrap(),
         controller: drive.place_poles(35.0).unwrap(),
         output: OutputParams::default(),
     };
@@ -162,14 +134,18 @@ fn the_lathes_gains_are_resolved_far_below_the_drive() {
     // The gains act as they should to 1e-5 of their value, from 1 to 35 kHz; the drive answers to 1e-4 of full command.
     for tick_hz in [1000.0, 2500.0, 35_000.0] {
         let (params, config) = lathe_gains(tick_hz);
-        let full = params.motion.full_command_feed_mm_per_min / 60.0 * params.motion.counts_per_mm / tick_hz;
+        let full = params.motion.full_command_feed_mm_per_min / 60.0 * params.motion.counts_per_mm
+            / tick_hz;
         let expected = params.controller.position_gain_per_s / tick_hz / full * 30.0;
         let mut controller = Controller::new(config);
         demanded(&mut controller, &standing(0.0));
         // The integral of a single tick is in it.
         let integral = params.controller.integral_gain_per_s2 / (tick_hz * tick_hz) / full * 30.0;
         let seen = demanded(&mut controller, &standing(30.0));
-        assert!((seen / (expected + integral) - 1.0).abs() < 1e-5, "{tick_hz} Hz: {seen} instead of {expected}");
+        assert!(
+            (seen / (expected + integral) - 1.0).abs() < 1e-5,
+            "{tick_hz} Hz: {seen} instead of {expected}"
+        );
     }
 }
 
@@ -182,12 +158,24 @@ fn law_at(config: Config, error: f64) -> f64 {
 
 #[test]
 fn the_deadband_is_subtracted_so_the_law_does_not_step_at_its_border() {
-    let gains = Gains { position: 0.001, ..Gains::default() };
-    let config = Config::new(&gains, 3.0, 0.0, 1.0).unwrap();
-    for (error, left) in [(0.0, 0.0), (2.999, 0.0), (3.0, 0.0), (3.5, 0.5), (100.0, 97.0)] {
+    let gains = Gains {
+        position: 0.001,
+        ..Gains::default()
+    };
+    let config = config(&gains, 3.0, 0.0, 1.0);
+    for (error, left) in [
+        (0.0, 0.0),
+        (2.999, 0.0),
+        (3.0, 0.0),
+        (3.5, 0.5),
+        (100.0, 97.0),
+    ] {
         for sign in [1.0, -1.0] {
             let seen = law_at(config, sign * error);
-            assert!((seen - sign * left * 0.001).abs() < 2.0 * LSB, "{error}: {seen}");
+            assert!(
+                (seen - sign * left * 0.001).abs() < 2.0 * LSB,
+                "{error}: {seen}"
+            );
         }
     }
     // Across the border the law moves by no more than the gain times the step of the error.
@@ -203,20 +191,27 @@ fn the_deadband_is_subtracted_so_the_law_does_not_step_at_its_border() {
 #[test]
 fn the_bias_alone_is_the_output_once_it_has_been_let_in() {
     for bias in [0.05, -0.005] {
-        let mut controller = Controller::new(Config::new(&Gains::default(), 0.0, bias, 5.0).unwrap());
+        let mut controller = Controller::new(config(&Gains::default(), 0.0, bias, 5.0));
         assert_eq!(demanded(&mut controller, &standing(0.0)), 0.0);
-        let last = (0..300).map(|_| demanded(&mut controller, &standing(0.0))).last().unwrap();
+        let last = (0..300)
+            .map(|_| demanded(&mut controller, &standing(0.0)))
+            .last()
+            .unwrap();
         assert!((last - bias).abs() <= LSB, "{last}");
     }
 }
 
 #[test]
 fn the_following_error_is_reported_before_the_deadband_and_saturates() {
-    let config = Config::new(&Gains::default(), 50.0, 0.0, 1.0).unwrap();
-    let mut controller = Controller::new(config);
+    let mut controller = Controller::new(config(&Gains::default(), 50.0, 0.0, 1.0));
     let mut report = |error: f64| {
         let signals = standing(error);
-        let demand = controller.step(&signals.setpoint, signals.position, &signals.estimate, crate::signals::NOT_LIMITED);
+        let demand = controller.step(
+            &signals.setpoint,
+            signals.position,
+            &signals.estimate,
+            NOT_LIMITED,
+        );
         demand.following_error.to_num::<f64>()
     };
     assert_eq!(report(12.25), 12.25);
@@ -227,7 +222,11 @@ fn the_following_error_is_reported_before_the_deadband_and_saturates() {
 #[test]
 fn gains_of_any_size_share_one_scale_without_losing_the_small_ones_that_matter() {
     // The larger weight takes 31 bits; the smaller one is off by at most half a unit of it.
-    let gains = Gains { position: 1e-3, velocity_feedforward: 100.0, ..Gains::default() };
+    let gains = Gains {
+        position: 1e-3,
+        velocity_feedforward: 100.0,
+        ..Gains::default()
+    };
     let mut controller = controller(gains, 1.0);
     demanded(&mut controller, &standing(0.0));
     let seen = demanded(&mut controller, &standing(100.0));

@@ -1,9 +1,12 @@
 //! From setpoint and estimate to the drive: the law, its continuity, the limits, and the whole step.
 
+mod any_bits;
+mod any_events;
 mod axis;
 mod continuity;
 mod integral;
 mod law;
+mod law_oracle;
 mod links;
 mod output;
 #[path = "../support/seeded.rs"]

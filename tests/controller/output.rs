@@ -14,14 +14,21 @@ fn command(value: f64) -> Command {
     Command::from_num(value)
 }
 
-const NONE: ActiveLimits = ActiveLimits { high: false, low: false, slew: false };
+const NONE: ActiveLimits = ActiveLimits {
+    high: false,
+    low: false,
+    slew: false,
+};
 
 #[test]
 fn a_demand_within_limit_and_slew_passes_unchanged() {
     let mut output = output(0.5, 0.125);
     for demand in [0.0625, 0.1875, 0.25, 0.125, 0.0] {
         assert_eq!(output.step(command(demand)), command(demand));
-        assert_eq!((output.command(), output.active_limits()), (command(demand), NONE));
+        assert_eq!(
+            (output.command(), output.active_limits()),
+            (command(demand), NONE)
+        );
     }
 }
 
@@ -31,7 +38,11 @@ fn the_limit_holds_on_both_sides_and_says_which() {
     assert_eq!(output.step(command(0.7)), command(0.5));
     assert_eq!(output.active_limits(), ActiveLimits { high: true, ..NONE });
     assert_eq!(output.step(command(0.5)), command(0.5));
-    assert_eq!(output.active_limits(), NONE, "at the limit is not beyond it");
+    assert_eq!(
+        output.active_limits(),
+        NONE,
+        "at the limit is not beyond it"
+    );
     assert_eq!(output.step(command(-1.9)), command(-0.5));
     assert_eq!(output.active_limits(), ActiveLimits { low: true, ..NONE });
 }
@@ -41,12 +52,26 @@ fn the_slew_limits_the_change_of_a_tick_and_says_so() {
     let mut output = output(1.0, 0.25);
     for step in [0.25, 0.5, 0.75] {
         assert_eq!(output.step(command(1.0)), command(step));
-        assert_eq!(output.active_limits(), ActiveLimits { high: true, slew: true, low: false });
+        assert_eq!(
+            output.active_limits(),
+            ActiveLimits {
+                high: true,
+                slew: true,
+                low: false
+            }
+        );
     }
     assert_eq!(output.step(command(1.0)), command(1.0));
     assert_eq!(output.active_limits(), NONE);
     assert_eq!(output.step(command(-1.0)), command(0.75));
-    assert_eq!(output.active_limits(), ActiveLimits { low: true, slew: true, high: false });
+    assert_eq!(
+        output.active_limits(),
+        ActiveLimits {
+            low: true,
+            slew: true,
+            high: false
+        }
+    );
 }
 
 #[test]
@@ -56,7 +81,10 @@ fn off_is_zero_at_once_and_the_next_step_slews_from_there() {
         output.step(command(1.0));
     }
     assert_eq!(output.off(), Command::ZERO);
-    assert_eq!((output.command(), output.active_limits()), (Command::ZERO, NONE));
+    assert_eq!(
+        (output.command(), output.active_limits()),
+        (Command::ZERO, NONE)
+    );
     assert_eq!(output.step(command(1.0)), command(0.25));
 }
 
@@ -80,7 +108,10 @@ fn limits_out_of_range_are_refused_by_name_value_and_range() {
         (0.5, 2.5, "output_slew_per_tick", 2.5, 1e-6, 2.0),
     ] {
         let error = Config::new(limit, slew).unwrap_err();
-        assert_eq!((error.name, error.value, error.min, error.max), (name, value, min, max));
+        assert_eq!(
+            (error.name, error.value, error.min, error.max),
+            (name, value, min, max)
+        );
     }
     assert!(Config::new(f64::NAN, 0.1).is_err() && Config::new(0.5, f64::NAN).is_err());
 }

@@ -1,0 +1,15 @@
+//! The simulated machine does what its parameters say.
+
+mod carriage;
+mod couplings;
+mod disc;
+mod drive;
+mod encoder_capture;
+mod encoder_edges;
+mod encoder_errors;
+mod friction;
+mod scenes;
+#[path = "../support/seeded.rs"]
+mod seeded;
+mod statistics;
+mod tachogenerator;

@@ -1,0 +1,9 @@
+//! Planned moves and their evaluation: limits, arrival, duration, the queue.
+
+mod evaluation;
+mod moves;
+mod oracle;
+mod queue;
+mod refusals;
+#[path = "../support/seeded.rs"]
+mod seeded;
