@@ -1,5 +1,8 @@
 //! The encoder's disc: where the edges of a revolution really lie.
 
+use leadscrew::parameter_table::ParameterTable;
+use leadscrew::units::{RangeError, checked};
+
 use crate::random::Noise;
 use crate::wave::sine;
 
@@ -39,10 +42,9 @@ impl Disc {
     ///
     /// # Errors
     /// A parameter out of range, or edges that are not a multiple of four.
-    pub fn new(params: &DiscParams, seed: u64) -> Result<Self, leadscrew::units::RangeError> {
-        use leadscrew::parameter_table::ParameterTable;
+    pub fn new(params: &DiscParams, seed: u64) -> Result<Self, RangeError> {
         params.check()?;
-        let edges = (params.edges_per_revolution as usize) & !3;
+        let edges = whole_lines(params.edges_per_revolution)?;
         let mut noise = Noise::new(seed, 1);
         let offsets = [(); 4].map(|()| params.phase_offset_d * noise.uniform());
         let (first_phase, second_phase) = (noise.uniform(), noise.uniform());
@@ -81,6 +83,14 @@ impl Disc {
     pub fn error_q32(&self, edge: usize) -> i64 {
         i64::from(self.errors[edge]) << (32 - 12)
     }
+}
+
+/// Edges of whole lines: a multiple of four.
+fn whole_lines(edges: f64) -> Result<usize, RangeError> {
+    let whole = (edges as usize) & !3;
+    let nearest = whole as f64;
+    checked("edges_per_revolution", edges, nearest, nearest)?;
+    Ok(whole)
 }
 
 /// Least distance between neighbouring edges.

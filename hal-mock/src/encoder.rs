@@ -77,6 +77,9 @@ const RING: usize = 4096;
 /// Sub-intervals of a tick in which the shaft may turn round.
 const SLOW_PARTS: i32 = 16;
 
+/// Age of an edge beyond which its time means nothing to the next one, timer clocks.
+const OLD_EDGE: i32 = 1 << 30;
+
 /// Direction of an edge: +1 or −1 counts.
 type Direction = i32;
 
@@ -193,6 +196,7 @@ impl Encoder {
         self.capture_start = self.taken;
         self.index = None;
         self.overrun = false;
+        self.forget_old_edge();
         let track = Track::new(arc);
         if track.never_turns() {
             self.pass_edges(&track, 0, TICK, Some(&Inverse::new(&track)));
@@ -208,6 +212,14 @@ impl Encoder {
         }
         self.clock = self.clock.wrapping_add(self.clocks_per_tick);
         self.sample();
+    }
+
+    /// Keeps the newest edge within reach of a comparison by sign, however long the shaft stands.
+    fn forget_old_edge(&mut self) {
+        let now = (self.clock >> 32) as u32;
+        if now.wrapping_sub(self.newest).cast_signed() > OLD_EDGE {
+            self.newest = now.wrapping_sub(OLD_EDGE.cast_unsigned());
+        }
     }
 
     /// What the hardware saw up to the last sampling instant.

@@ -115,7 +115,10 @@ impl Machine {
             Coupling::Play(play, end) => {
                 let (position, driven) = play.follow(shaft.end().position);
                 let velocity = if driven { shaft.end().velocity } else { 0.0 };
-                joined(end, (position, velocity))
+                let way = position - end.0;
+                // The ends of the play are taken up by impact, within the tick.
+                end.1 = without_overshoot(end.1, way);
+                joined(end, (position, without_overshoot(velocity, way)))
             }
             Coupling::Scale(end) => {
                 let carriage = self.carriage.state();
@@ -171,6 +174,17 @@ impl Coupling {
             Self::Rigid
         }
     }
+}
+
+/// A velocity at an end of an arc over `way`, bounded so that the arc does not turn back: a cubic with
+/// end velocities between zero and three times its mean velocity is monotone.
+fn without_overshoot(velocity: f64, way: f64) -> f64 {
+    let (low, high) = if way < 0.0 {
+        (3.0 * way, 0.0)
+    } else {
+        (0.0, 3.0 * way)
+    };
+    velocity.clamp(low, high)
 }
 
 /// The arc from where the last one ended to a new end.

@@ -165,6 +165,24 @@ pub struct Simulation {
 }
 
 impl Simulation {
+    /// `scenario` on the machine `params` with the errors that `seed` draws, by an axis with `estimator`
+    /// in its loop.
+    ///
+    /// # Errors
+    /// A parameter out of range, or a move that cannot be planned.
+    pub fn prepare(
+        scenario: &MoveAndBack,
+        params: &MachineParams,
+        estimator: EstimatorConfig,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
+        let axis = scenario.axis_params(params, estimator)?;
+        let config = axis.validate()?;
+        let script = Script::new(scenario, axis.motion.counts_per_mm, &config)?;
+        let machine = Machine::new(params, scenario.tick_hz, seed)?;
+        Ok(Self::new(machine, Axis::new(config), script))
+    }
+
     /// A run of `script` by `axis` on `machine`, both at rest.
     #[must_use]
     pub fn new(machine: Machine, axis: Axis, script: Script) -> Self {

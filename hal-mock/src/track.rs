@@ -124,8 +124,11 @@ impl Inverse {
         let reciprocal = (1_i64 << 59) / i64::from(track.travelled(TICK));
         let bend = i64::from(track.half_acceleration) + i64::from(track.sixth_jerk);
         let curvature = ((bend * reciprocal) >> (59 - TIME_FRAC)) as i32;
-        // A correction leaves at most four curvatures of itself.
-        let kept = (curvature.saturating_abs() >> 8).max(1);
+        // A correction leaves as much of itself as the velocity differs from its mean there: at most twice
+        // this spread, to first order. The curvature would not do: its two terms may cancel.
+        let spread = i64::from(track.half_acceleration).abs() + i64::from(track.sixth_jerk).abs();
+        let spread = (spread * reciprocal.abs()) >> (59 - TIME_FRAC);
+        let kept = (spread >> 8).max(1) as i32;
         let last_correction = (TIME_TOLERANCE << (TIME_FRAC - 8 - 2)) / kept;
         Self {
             reciprocal,

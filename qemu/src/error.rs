@@ -53,6 +53,14 @@ pub enum Error {
         /// What the decoder said.
         reason: String,
     },
+    /// The image is no ELF file.
+    #[error("{}: cannot read its sections: {reason}", path.display())]
+    Sections {
+        /// The image.
+        path: PathBuf,
+        /// What the reader said.
+        reason: String,
+    },
     /// QEMU could not be started or waited for.
     #[error("cannot run {QEMU}: {0}")]
     Qemu(io::Error),

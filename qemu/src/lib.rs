@@ -19,8 +19,10 @@ mod error;
 mod image;
 mod log;
 mod run;
+mod sections;
 
 pub use error::Error;
 pub use image::{BOARD, TARGET, build};
 pub use log::{LogLine, decode};
 pub use run::{LARGEST_SHIFT, Output, QEMU, Run};
+pub use sections::Sections;

@@ -3,13 +3,15 @@
 
 use std::process::ExitCode;
 
-use leadscrew_qemu::{Error, LARGEST_SHIFT, Output, Run, build};
+use leadscrew_qemu::{Error, LARGEST_SHIFT, Output, Run, Sections, build};
 
 const USAGE: &str = "\
 usage: leadscrew-qemu BIN [--shift N] [--messages] [GUEST-WORD...]
-  BIN         binary of the board crate: axis, bench
+       leadscrew-qemu BIN --sections
+  BIN         binary of the board crate: axis, bench, product
   --shift N   one instruction takes 2^N ns, 0 to 10 (default 3)
   --messages  only the messages, without time and level
+  --sections  do not run it: print the bytes of text, data and bss
   GUEST-WORD  word of the guest's command line, for instance tick-hz=2500";
 
 #[derive(Debug, PartialEq, Eq)]
@@ -17,6 +19,7 @@ struct Arguments {
     bin: String,
     shift: u32,
     messages: bool,
+    sections: bool,
     words: Vec<String>,
 }
 
@@ -28,16 +31,21 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    match run(&arguments) {
-        Ok(output) => {
-            print(&output, arguments.messages);
-            u8::try_from(output.exit_code).map_or(ExitCode::FAILURE, ExitCode::from)
-        }
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(3)
-        }
-    }
+    let code = if arguments.sections {
+        sections(&arguments.bin)
+    } else {
+        run(&arguments)
+    };
+    code.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::from(3)
+    })
+}
+
+fn sections(bin: &str) -> Result<ExitCode, Error> {
+    let Sections { text, data, bss } = Sections::of(&build(bin, "firmware")?)?;
+    println!("text {text}\ndata {data}\nbss {bss}");
+    Ok(ExitCode::SUCCESS)
 }
 
 fn parse(words: impl Iterator<Item = String>) -> Result<Arguments, String> {
@@ -45,6 +53,7 @@ fn parse(words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         bin: String::new(),
         shift: 3,
         messages: false,
+        sections: false,
         words: Vec::new(),
     };
     let mut words = words;
@@ -52,6 +61,7 @@ fn parse(words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     while let Some(word) = words.next() {
         match word.as_str() {
             "--messages" => arguments.messages = true,
+            "--sections" => arguments.sections = true,
             "--shift" => {
                 arguments.shift = words
                     .next()
@@ -66,10 +76,12 @@ fn parse(words: impl Iterator<Item = String>) -> Result<Arguments, String> {
     Ok(arguments)
 }
 
-fn run(arguments: &Arguments) -> Result<Output, Error> {
+fn run(arguments: &Arguments) -> Result<ExitCode, Error> {
     let mut run = Run::new(build(&arguments.bin, "firmware")?).shift(arguments.shift);
     run.args.clone_from(&arguments.words);
-    run.run()
+    let output = run.run()?;
+    print(&output, arguments.messages);
+    Ok(u8::try_from(output.exit_code).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
 fn print(output: &Output, messages: bool) {

@@ -16,7 +16,7 @@ pub fn run(bless: bool) -> Result<()> {
         .words(&["bench", "--messages", "--shift", SHIFT])
         .words(&[&format!("shift={SHIFT}")])
         .output()?;
-    let table = Table::from_log(&log)?;
+    let table = Table::from_log(&(log + &sizes()?))?;
     let text = table.to_text();
     print!("{text}");
     let path = root().join(GOLDEN);
@@ -34,4 +34,17 @@ pub fn run(bless: bool) -> Result<()> {
          explain the change and run `cargo xtask bench --bless`",
         differences.join("\n  ")
     ))
+}
+
+/// Bytes of the product core's image as rows of the table: what the product takes without simulator and
+/// log.
+fn sizes() -> Result<String> {
+    let sections = cargo(["run", "--quiet", "--package", packages::QEMU, "--"])
+        .words(&["product", "--sections"])
+        .output()?;
+    let row = |line: &str| {
+        let (section, bytes) = line.split_once(' ')?;
+        Some(format!("bench product/{section}_bytes {bytes} {bytes} 1\n"))
+    };
+    Ok(sections.lines().filter_map(row).collect())
 }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use crate::Result;
 
 const HEAD: &str = "\
-# Instructions of every stage on a Cortex-M4F, counted by QEMU (they are not cycles).
+# Instructions of every stage on a Cortex-M4F, counted by QEMU (they are not cycles), over the moving
+# ticks of the standard move; `adversary` over random inputs that no machine gives. `step` is the whole
+# tick with that estimator; `product` is the core alone, in bytes.
 # Written by `cargo xtask bench --bless`; `cargo xtask bench` fails on a change of more than 2 %.
 ";
 

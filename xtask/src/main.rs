@@ -19,6 +19,7 @@ usage: cargo xtask COMMAND
   test [--long]    set up, then everything CI checks, in rings; --long adds the long repeats
   qemu [WORD...]   run the axis in QEMU at 1000 and 2500 Hz; WORD goes to the guest
   bench [--bless]  count instructions in QEMU and compare with the golden table; --bless rewrites it
+  golden           write the tables under tests/golden anew, for review
   deny             check licences, sources and banned crates against deny.toml";
 
 /// What went wrong, ready to be printed.
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         ["qemu", guest_words @ ..] => done(qemu(guest_words)),
         ["bench"] => done(bench::run(false)),
         ["bench", "--bless"] => done(bench::run(true)),
+        ["golden"] => done(golden_tables()),
         ["deny"] => done(deny::run()),
         _ => {
             eprintln!("{USAGE}");
@@ -51,6 +53,14 @@ fn main() -> ExitCode {
 
 fn done(result: Result<()>) -> Result<ExitCode> {
     result.map(|()| ExitCode::SUCCESS)
+}
+
+/// The tables of the tests, then that of the bench.
+fn golden_tables() -> Result<()> {
+    command::cargo(["test", "--package", "leadscrew", "--test", "estimators"])
+        .env("INSTA_UPDATE", "always")
+        .run()?;
+    bench::run(true)
 }
 
 fn qemu(guest_words: &[&str]) -> Result<()> {

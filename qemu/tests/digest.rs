@@ -1,0 +1,57 @@
+//! The firmware in QEMU and the simulation on the host are the same run, bit for bit.
+
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_hal_mock::scenario::{MoveAndBack, Simulation};
+use leadscrew_qemu::{Run, build};
+
+/// Runs of the firmware at each rate.
+fn repeats() -> usize {
+    if std::env::var_os("LEADSCREW_LONG").is_some() {
+        10
+    } else {
+        2
+    }
+}
+
+/// Digest of the standard move on the host, as the firmware logs it.
+fn host_digest(tick_hz: u32) -> String {
+    let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
+    let scenario = MoveAndBack::standard(f64::from(tick_hz));
+    let machine = MachineParams::z_16k20f3();
+    let mut simulation = Simulation::prepare(&scenario, &machine, estimator, 1).unwrap();
+    while simulation.step().unwrap().is_some() {}
+    format!(
+        "digest {:016x} of {} ticks",
+        simulation.digest(),
+        simulation.ticks()
+    )
+}
+
+fn the_same_in_qemu(tick_hz: u32) {
+    let expected = host_digest(tick_hz);
+    let run = Run::new(build("axis", "firmware").unwrap()).arg(format!("tick-hz={tick_hz}"));
+    for _ in 0..repeats() {
+        let output = run.run().unwrap();
+        assert_eq!(output.exit_code, 0, "{output}");
+        let found = output.log_lines.iter().any(|line| line.message == expected);
+        assert!(found, "expected `{expected}` in\n{output}");
+        let in_time = output
+            .log_lines
+            .iter()
+            .any(|line| line.message.contains("late 0 overlong 0"));
+        assert!(in_time, "{output}");
+    }
+}
+
+#[test]
+#[ignore = "needs QEMU; run by cargo xtask test"]
+fn the_standard_move_at_1000_hz_is_that_of_the_host() {
+    the_same_in_qemu(1000);
+}
+
+#[test]
+#[ignore = "needs QEMU; run by cargo xtask test"]
+fn the_standard_move_at_2500_hz_is_that_of_the_host() {
+    the_same_in_qemu(2500);
+}
