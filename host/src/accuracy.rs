@@ -127,3 +127,30 @@ impl Observed {
             })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_those_against_the_instant_of_the_estimate() {
+        let trial = Trial {
+            motion: Motion::Ramp {
+                velocity: 10.0,
+                acceleration: 0.5,
+            },
+            encoder: EncoderModel::ideal(),
+            tick_hz: 1000.0,
+            ticks: 300,
+            seed: 1,
+        };
+        let simple = EstimatorConfig::by_name("simple").ok().flatten();
+        let observed = trial
+            .observe(simple.expect("an estimator"))
+            .expect("in range");
+        assert_eq!(observed.estimates.len(), 300);
+        // Against the instant of the sample it would be 0.5 d/tick² times a lag of 7.5 ticks.
+        assert!(observed.velocity_error().rms() < 0.1);
+        assert!((observed.response_lag_v() - 7.5).abs() < 0.1);
+    }
+}

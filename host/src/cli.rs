@@ -2,13 +2,21 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use leadscrew::estimator::EstimatorConfig;
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 the job failed, 2 bad usage";
+
+fn estimator_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(EstimatorConfig::NAMES)
+}
 
 /// Motion control of one machine-tool axis: simulate it, replay captures of its encoder.
 ///
-/// Without a subcommand: a demonstration on the simulated longitudinal axis of a 16K20F3 lathe.
+/// Without a subcommand: a demonstration on a simulated lathe, plots under target/leadscrew.
 #[derive(Debug, Parser)]
-#[command(name = "leadscrew", version, about, max_term_width = 100)]
+#[command(name = "leadscrew", version, about, after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -44,7 +52,7 @@ pub struct SimArgs {
     /// The machine: 16k20f3, 16k20f3-bare or a TOML file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
     pub machine: String,
-    /// Distance of the move, mm
+    /// Distance of the move, mm; negative to start the other way
     #[arg(
         long,
         value_name = "X",
@@ -52,7 +60,7 @@ pub struct SimArgs {
         allow_negative_numbers = true
     )]
     pub move_mm: f64,
-    /// Feed of the move, mm/min
+    /// Feed of the move, mm/min, at most 95 % of the machine's at full command
     #[arg(
         long,
         value_name = "MM_PER_MIN",
@@ -69,13 +77,18 @@ pub struct SimArgs {
     )]
     pub tick_hz: f64,
     /// Estimator in the loop, in the CSV and in the plot
-    #[arg(long, value_name = "NAME", default_value = "exponential")]
+    #[arg(long, value_name = "NAME", default_value = "exponential", value_parser = estimator_names())]
     pub estimator: String,
     /// Seed of everything random
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub seed: u64,
     /// Print the machine as TOML, with units and comments, and stop
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["json", "csv", "plot"])]
     pub dump_machine: bool,
     /// Where results go
     #[command(flatten)]
@@ -105,10 +118,10 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "CH")]
     pub z: Option<String>,
     /// Sampling rate of a sigrok CSV that does not state it, Hz
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub samplerate: Option<u64>,
     /// Only this estimator [default: all in the report, exponential in the CSV]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = estimator_names())]
     pub estimator: Option<String>,
     /// Start of the span over which acceleration is fitted, s [default: after warm-up]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]

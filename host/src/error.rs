@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::plot::PlotError;
+
 /// Why a command could not do its job.
 #[derive(Debug, Error)]
 pub enum CommandError {
@@ -21,15 +23,21 @@ pub enum CommandError {
     Scenario(#[from] leadscrew_hal_mock::scenario::ScenarioError),
     /// A plot cannot be made.
     #[error(transparent)]
-    Plot(#[from] crate::plot::PlotError),
+    Plot(#[from] PlotError),
     /// A file cannot be written.
-    #[error("{}: cannot be written: {reason}", file.display())]
+    #[error(
+        "{}: cannot be written ({reason}): check that its directory exists and may be written to",
+        file.display()
+    )]
     Write {
         /// The file.
         file: PathBuf,
         /// Why.
         reason: std::io::Error,
     },
+    /// Standard output cannot be written.
+    #[error("the report cannot be printed: {0}")]
+    Print(std::io::Error),
     /// Something is wrong with the data.
     #[error("{0}")]
     Data(String),
@@ -46,7 +54,7 @@ impl CommandError {
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Scenario(_) => 2,
+            Self::Usage(_) | Self::Scenario(_) | Self::Plot(PlotError::Extension { .. }) => 2,
             _ => 1,
         }
     }

@@ -1,6 +1,6 @@
 //! What the plots of simulation and replay have in common.
 
-use leadscrew::estimator::Estimate;
+use leadscrew::estimator::{Estimate, EstimatorConfig};
 
 use crate::plot::{Colour, Panel, Series};
 
@@ -46,12 +46,16 @@ pub fn acceleration_points(estimates: &[Estimate], tick_hz: f64) -> Vec<(f64, f6
     )
 }
 
-/// A curve of the estimator number `index` in the list: the first, plain counting, is grey dots.
+/// A curve of an estimator, which looks alike in every figure: the first of the list, plain counting,
+/// is grey dots.
 #[must_use]
-pub fn estimator_series(index: usize, name: &str, points: Vec<(f64, f64)>) -> Series {
-    match index {
+pub fn estimator_series(name: &str, points: Vec<(f64, f64)>) -> Series {
+    let place = EstimatorConfig::NAMES
+        .iter()
+        .position(|known| *known == name);
+    match place.unwrap_or_default() {
         0 => Series::dots(name, points, Colour::Grey),
-        _ => Series::line(name, points, Colour::cycle(index - 1)).with_width(1.2),
+        index => Series::line(name, points, Colour::cycle(index - 1)).with_width(1.2),
     }
 }
 

@@ -23,7 +23,7 @@ pub const BASES: [Base; 2] = [
 #[derive(Debug, Error)]
 pub enum MachineFileError {
     /// It cannot be read.
-    #[error("{}: cannot be read: {reason}", file.display())]
+    #[error("{}: cannot be read ({reason}): check the path and its permissions", file.display())]
     Read {
         /// The file.
         file: PathBuf,
@@ -94,11 +94,7 @@ fn parse(text: &str) -> Result<MachineParams, Complaint> {
             continue;
         }
         let DeValue::Table(table) = value.get_ref() else {
-            let known = sections().join(", ");
-            return Err(Complaint::new(
-                key.span(),
-                format!("`{name}` is not a section: expected `base` or one of [{known}]"),
-            ));
+            return Err(Complaint::new(key.span(), stray_key(name)));
         };
         match name {
             "drive" => fill(&mut machine.drive, name, table)?,
@@ -118,18 +114,38 @@ fn parse(text: &str) -> Result<MachineParams, Complaint> {
     Ok(machine)
 }
 
+/// What to say of a key that stands above the sections.
+fn stray_key(name: &str) -> String {
+    let known = sections();
+    if known.contains(&name) {
+        format!("`{name}` is a section: write [{name}] and its keys below it")
+    } else if strsim::jaro(name, "base") > 0.8 {
+        format!("unknown key `{name}` above the sections: did you mean `base`?")
+    } else {
+        let known = known.map(|section| format!("[{section}]")).join(", ");
+        format!(
+            "unknown key `{name}` above the sections: only `base` stands there, other keys belong in {known}"
+        )
+    }
+}
+
 const fn sections() -> [&'static str; 5] {
     ["drive", "carriage", "mount", "disc", "encoder"]
 }
 
 fn base(document: &DeTable<'_>) -> Result<MachineParams, Complaint> {
-    let names = || BASES.map(|(name, _)| name);
+    let names = BASES.map(|(name, _)| name);
     let Some(value) = document.get("base") else {
         return Ok(MachineParams::z_16k20f3());
     };
-    let wanted = value.get_ref().as_str().unwrap_or("?");
+    let known = names.join(", ");
+    let Some(wanted) = value.get_ref().as_str() else {
+        return Err(Complaint::new(
+            value.span(),
+            format!("base must be a name in quotes: one of {known}"),
+        ));
+    };
     built_in(wanted).ok_or_else(|| {
-        let known = names().join(", ");
         Complaint::new(
             value.span(),
             format!("unknown base `{wanted}`: expected one of {known}"),

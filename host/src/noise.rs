@@ -50,3 +50,20 @@ impl NoiseGain {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_add_the_noise_of_their_samples() {
+        let difference = EstimatorConfig::by_name("difference").ok().flatten();
+        let gain = NoiseGain::of(difference.expect("an estimator"));
+        // x − x₁ and x − 2 x₁ + x₂.
+        assert!((gain.velocity - 2.0_f64.sqrt()).abs() < 1e-6, "{gain:?}");
+        assert!(
+            (gain.acceleration - 6.0_f64.sqrt()).abs() < 1e-6,
+            "{gain:?}"
+        );
+    }
+}

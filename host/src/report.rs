@@ -1,7 +1,9 @@
 //! Rows that the CSV files of simulation and replay share, and the figures of an estimator.
 
+use std::fmt;
 use std::io::Write;
 
+use comfy_table::{CellAlignment, Table, presets};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use serde::Serialize;
 
@@ -42,6 +44,37 @@ impl From<&EstimatorConfig> for LagFigures {
             lag_a_ticks: lags.acceleration.to_num(),
         }
     }
+}
+
+impl fmt::Display for LagFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            lag_x_ticks,
+            lag_v_ticks,
+            lag_a_ticks,
+        } = self;
+        write!(f, "{lag_x_ticks:.2} {lag_v_ticks:.2} {lag_a_ticks:.2}")
+    }
+}
+
+/// A table without frames: a column of names, then figures.
+#[must_use]
+pub fn text_table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(header);
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        if index > 0 {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// A figure with that many decimals; a dash where there is none.
+#[must_use]
+pub fn figure_or_dash(figure: Option<f64>, decimals: usize) -> String {
+    figure.map_or_else(|| "-".to_owned(), |figure| format!("{figure:.decimals$}"))
 }
 
 /// Writes the shared columns of a tick, and any further ones.
@@ -100,9 +133,7 @@ impl<W: Write> CsvReport<W> {
             .write_field((tick as f64 / self.tick_hz).to_string())?;
         self.writer.write_field(count.to_string())?;
         for value in shared.iter().chain(further) {
-            let text = format!("{value:.9}");
-            self.writer
-                .write_field(text.trim_end_matches('0').trim_end_matches('.'))?;
+            self.writer.write_field(decimal(*value))?;
         }
         self.writer.write_record(None::<&[u8]>)
     }
@@ -113,5 +144,25 @@ impl<W: Write> CsvReport<W> {
     /// The writer's.
     pub fn finish(mut self) -> std::io::Result<()> {
         self.writer.flush()
+    }
+}
+
+/// A value to nine decimals, without zeros at the end.
+fn decimal(value: f64) -> String {
+    let text = format!("{value:.9}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".to_owned(),
+        short => short.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decimal;
+
+    #[test]
+    fn values_are_short_and_never_minus_zero() {
+        let texts = [0.0, -0.0, -1e-12, 100.0, -1.5, 1e-9, 0.1 + 0.2].map(decimal);
+        assert_eq!(texts, ["0", "0", "0", "100", "-1.5", "0.000000001", "0.3"]);
     }
 }

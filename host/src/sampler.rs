@@ -8,8 +8,11 @@ use leadscrew::quadrature::{Decoder, Step};
 
 use crate::recording::{Change, Recording};
 
-/// Fastest timer the core takes, Hz; a finer recording is brought down to it.
-const MAX_TIMER_HZ: u64 = 250_000_000;
+/// Timers the core takes, Hz: a finer recording is brought down, a coarser one is told more finely.
+const TIMER_HZ: (u64, u64) = (1_000_000, 250_000_000);
+
+/// Parts of a hertz in which the control rate is held.
+const MICRO: f64 = 1e6;
 
 /// What the decoding of a whole recording came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,8 +28,9 @@ pub struct Totals {
 /// Samples a recording at a control rate.
 pub struct Sampler<'a> {
     recording: &'a Recording,
-    /// Control rate in thousandths of a hertz, so that instants stay integers.
-    tick_millihertz: u128,
+    /// Control rate in millionths of a hertz, so that instants stay integers. Products of it, of times and
+    /// of clocks fit in 128 bits, since no tick lies beyond the recording's duration of 64.
+    tick_microhertz: u128,
     timer_hz: u64,
     ticks: u64,
     tick: u64,
@@ -39,18 +43,18 @@ pub struct Sampler<'a> {
 }
 
 impl<'a> Sampler<'a> {
-    /// Samples `recording` at `tick_hz`, at least 0.001 Hz.
+    /// Samples `recording` at `tick_hz`, which counts in steps of 1 µHz.
     #[must_use]
     pub fn new(recording: &'a Recording, tick_hz: f64) -> Self {
-        let tick_millihertz = ((tick_hz * 1000.0).round() as u128).max(1);
-        let spans = u128::from(recording.duration) * tick_millihertz
-            / (u128::from(recording.clock_hz) * 1000);
+        let tick_microhertz = ((tick_hz * MICRO).round() as u128).max(1);
+        let spans = u128::from(recording.duration) * tick_microhertz
+            / (u128::from(recording.clock_hz) * MICRO as u128);
         let levels = recording.initial;
         Self {
             recording,
-            tick_millihertz,
-            timer_hz: recording.clock_hz.min(MAX_TIMER_HZ),
-            ticks: spans as u64 + 1,
+            tick_microhertz,
+            timer_hz: recording.clock_hz.clamp(TIMER_HZ.0, TIMER_HZ.1),
+            ticks: u64::try_from(spans).unwrap_or(u64::MAX).saturating_add(1),
             tick: 0,
             next_change: 0,
             decoder: Decoder::new(levels.a, levels.b),
@@ -82,7 +86,7 @@ impl<'a> Sampler<'a> {
         let mut index = None;
         let mut illegal = 0_u16;
         while let Some(change) = self.due_change() {
-            let at = self.timer(u128::from(change.time));
+            let at = self.timer(change.time);
             match self.decode(change) {
                 Step::None => {}
                 Step::Illegal => illegal = illegal.saturating_add(1),
@@ -96,7 +100,7 @@ impl<'a> Sampler<'a> {
             }
             self.index_level = change.levels.z;
         }
-        let sampled_at = self.timer(self.instant_clocks());
+        let sampled_at = self.instant();
         self.tick += 1;
         Some(Capture {
             count: self.count as u32,
@@ -126,8 +130,8 @@ impl<'a> Sampler<'a> {
     /// The next change, if it belongs to this tick: t·f ≤ k.
     fn due_change(&mut self) -> Option<Change> {
         let change = *self.recording.changes.get(self.next_change)?;
-        let due = u128::from(change.time) * self.tick_millihertz
-            <= u128::from(self.tick) * u128::from(self.recording.clock_hz) * 1000;
+        let due = u128::from(change.time) * self.tick_microhertz
+            <= u128::from(self.tick) * u128::from(self.recording.clock_hz) * MICRO as u128;
         due.then(|| {
             self.next_change += 1;
             change
@@ -145,13 +149,15 @@ impl<'a> Sampler<'a> {
         step
     }
 
-    /// The sampling instant in clocks of the recording, rounded down.
-    fn instant_clocks(&self) -> u128 {
-        u128::from(self.tick) * u128::from(self.recording.clock_hz) * 1000 / self.tick_millihertz
+    /// The sampling instant as a reading of the timer, rounded down.
+    fn instant(&self) -> u32 {
+        (u128::from(self.tick) * u128::from(self.timer_hz) * MICRO as u128 / self.tick_microhertz)
+            as u32
     }
 
-    /// Clocks of the recording as a reading of the timer, which wraps.
-    fn timer(&self, clocks: u128) -> u32 {
-        (clocks * u128::from(self.timer_hz) / u128::from(self.recording.clock_hz)) as u32
+    /// A time of the recording as a reading of the timer, which wraps, rounded down.
+    fn timer(&self, clocks: u64) -> u32 {
+        (u128::from(clocks) * u128::from(self.timer_hz) / u128::from(self.recording.clock_hz))
+            as u32
     }
 }

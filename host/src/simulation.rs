@@ -1,12 +1,12 @@
 //! A run of the simulated machine with every estimator listening.
 
-use leadscrew::axis::{Axis, Outputs};
+use leadscrew::axis::Outputs;
 use leadscrew::capture::Unwrapper;
 use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
 use leadscrew::hal::Encoder;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script, Simulation};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Simulation};
 use leadscrew_hal_mock::tachogenerator;
 
 use crate::progress::Progress;
@@ -77,12 +77,8 @@ impl RunSpec {
     /// # Errors
     /// A parameter that is out of range or a move that cannot be planned.
     pub fn run(&self) -> Result<Run, ScenarioError> {
-        let params = self.scenario.axis_params(&self.machine, self.estimator)?;
-        let config = params.validate()?;
-        let script = Script::new(&self.scenario, params.motion.counts_per_mm, &config)?;
-        let machine = Machine::new(&self.machine, self.scenario.tick_hz, self.seed)?;
-        let mut simulation = Simulation::new(machine, Axis::new(config), script);
-
+        let mut simulation =
+            Simulation::prepare(&self.scenario, &self.machine, self.estimator, self.seed)?;
         let mut listening = Listening::new(all_estimators());
         let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));
         let mut ticks = Vec::with_capacity(simulation.ticks() as usize);
@@ -221,9 +217,7 @@ impl Run {
 
     /// The tachogenerator's reading `lag` ticks before tick `tick`, between readings by a straight line.
     fn tachogenerator(&self, tick: usize, lag: f64) -> Option<f64> {
-        // Samples lie evenly in the tick, the first at its start: their mean is half a spacing late.
-        let age = 0.5 + 0.5 * self.tick_hz / tachogenerator::SAMPLE_HZ;
-        let instant = tick as f64 - lag + age;
+        let instant = tick as f64 - lag + reading_age(self.tick_hz);
         let at = |index: usize| self.ticks.get(index).map(|tick| tick.tachogenerator);
         if instant < 0.0 {
             return None;
@@ -231,5 +225,52 @@ impl Run {
         let (before, share) = (at(instant as usize)?, instant.fract());
         let after = at(instant as usize + 1).unwrap_or(before);
         Some(before + share * (after - before))
+    }
+}
+
+/// How far a reading of the tachogenerator lies back on average, ticks.
+fn reading_age(tick_hz: f64) -> f64 {
+    // The oscilloscope samples at the start of the first tick and every so often from there: within the
+    // ticks, samples fall on the multiples of this, 0 among them and 1 not.
+    let grid =
+        common_divisor(tick_hz.round(), tachogenerator::SAMPLE_HZ) / tachogenerator::SAMPLE_HZ;
+    0.5 + 0.5 * grid
+}
+
+/// Greatest common divisor of two whole numbers.
+fn common_divisor(one: f64, other: f64) -> f64 {
+    if other < 0.5 {
+        one
+    } else {
+        common_divisor(other, one % other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_of_the_tachogenerator_lie_back_by_what_their_samples_do() {
+        for tick_hz in [1000.0, 2500.0, 500.0, 1234.0] {
+            let mut sum = 0.0;
+            // Samples of a motion of constant acceleration 1 d/tick², averaged over each tick.
+            let mut next = 0.0_f64;
+            let ticks = 4000;
+            for tick in 0..ticks {
+                let (mut readings, mut samples) = (0.0, 0.0);
+                while next < f64::from(tick + 1) - 1e-9 {
+                    readings += next;
+                    samples += 1.0;
+                    next += tick_hz / tachogenerator::SAMPLE_HZ;
+                }
+                sum += f64::from(tick + 1) - readings / samples;
+            }
+            let age = sum / f64::from(ticks);
+            assert!(
+                (age - reading_age(tick_hz)).abs() < 0.01,
+                "{tick_hz}: {age}"
+            );
+        }
     }
 }

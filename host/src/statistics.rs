@@ -28,7 +28,19 @@ impl Spread {
         }
     }
 
-    /// Largest magnitude.
+    /// [`rms`](Self::rms), or `None` of nothing.
+    #[must_use]
+    pub fn rms_of_some(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.rms())
+    }
+
+    /// [`peak`](Self::peak), or `None` of nothing.
+    #[must_use]
+    pub fn peak_of_some(&self) -> Option<f64> {
+        (self.count > 0).then_some(self.peak)
+    }
+
+    /// Largest magnitude; 0 of nothing.
     #[must_use]
     pub const fn peak(&self) -> f64 {
         self.peak

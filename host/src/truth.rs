@@ -38,3 +38,45 @@ impl TruthTrack {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_of_constant_jerk_is_met_between_ticks() {
+        let motion = Arc {
+            start: State {
+                position: 5.0,
+                velocity: -3.0,
+                acceleration: 0.25,
+            },
+            jerk: 0.125,
+        };
+        let mut track = TruthTrack::default();
+        (0..10).for_each(|tick| track.push(motion.at(f64::from(tick))));
+        for (tick, lag) in [
+            (0, 0.0),
+            (3, 0.0),
+            (3, 0.5),
+            (9, 4.75),
+            (9, 9.0),
+            (8, -0.75),
+        ] {
+            let expected = motion.at(tick as f64 - lag);
+            let found = track.before(tick, lag).expect("within the track");
+            let errors = [
+                found.position - expected.position,
+                found.velocity - expected.velocity,
+                found.acceleration - expected.acceleration,
+            ];
+            assert!(
+                errors.iter().all(|error| error.abs() < 1e-12),
+                "{tick}, {lag}"
+            );
+        }
+        assert_eq!(track.before(2, 2.5), None);
+        assert_eq!(track.before(9, -0.5), None);
+        assert_eq!(track.before(10, 0.0), None);
+    }
+}

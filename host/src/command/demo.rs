@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::MoveAndBack;
 
@@ -10,6 +10,7 @@ use super::print;
 use crate::error::CommandError;
 use crate::figures::{self, acceleration_points, estimator_series, panel, points, velocity_points};
 use crate::plot::{Colour, Figure, Series};
+use crate::report::text_table;
 use crate::simulation::{Run, RunSpec, all_estimators};
 use crate::statistics::Spread;
 
@@ -50,7 +51,7 @@ pub fn run() -> Result<(), CommandError> {
 
     print(&format!(
         "{INTRODUCTION}{}\n{EXPLANATION}",
-        table(judged, &errors)
+        table(judged, &errors).trim_fmt()
     ))?;
     for (name, figure) in [
         ("estimates", estimates_figure(judged)),
@@ -66,30 +67,31 @@ pub fn run() -> Result<(), CommandError> {
 const JUDGED: &str = "exponential";
 
 const INTRODUCTION: &str = "\
-leadscrew: 16K20F3 lathe, Z axis (simulated), 300 mm at 9000 mm/min and back, tick 1 ms
-encoder 10 000 d/rev with the errors of a real disc, full drive model, seed 1
+Z axis of a 16K20F3 lathe, simulated: 300 mm at 9 000 mm/min and back, tick 1 ms
+Encoder of 10 000 d/rev with errors of a real disc, drive with friction, delay
 
 ";
 
 const EXPLANATION: &str = "
-sigma: rms error against the true motion at the instant that the estimate is for, while moving
-cut:   how much smaller that is than by plain differences of the count
-tacho: rms difference from a tachogenerator read in steps of 0.233 d/tick
-following error: with that estimator in the loop; the loop is tuned alike for all
+d      one count of the encoder, 1 µm
+sigma  rms error while moving, against the truth at the instant it is for
+tacho  rms difference from a tachogenerator read in steps of 0.233 d/tick
+cut    how many times smaller than by plain differences: of sigma a, of tacho
+error  following error with that estimator in a loop that is tuned alike for all
+
 ";
 
 fn table(run: &Run, errors: &[(&str, Spread)]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY).set_header([
+    let mut table = text_table(&[
         "estimator",
         "lag x/v/a\nticks",
         "sigma v\nd/tick",
         "sigma a\nd/tick²",
-        "cut of\nsigma a",
+        "cut",
         "tacho\nd/tick",
-        "cut of\ntacho",
-        "following error\npeak, d",
-        "following error\nrms, d",
+        "cut",
+        "error\npeak d",
+        "error\nrms d",
     ]);
     let raw = run
         .listeners
@@ -125,9 +127,6 @@ fn table(run: &Run, errors: &[(&str, Spread)]) -> Table {
             format!("{:.2}", error.rms()),
         ]);
     }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
     table
 }
 
@@ -135,11 +134,10 @@ fn table(run: &Run, errors: &[(&str, Spread)]) -> Table {
 fn estimates_figure(run: &Run) -> Figure {
     let truth = run.true_states();
     let (mut errors, mut accelerations) = (Vec::new(), Vec::new());
-    for (index, listener) in run.listeners.iter().enumerate() {
+    for listener in &run.listeners {
         let name = listener.config.name();
-        errors.push(estimator_series(index, name, run.velocity_errors(listener)));
+        errors.push(estimator_series(name, run.velocity_errors(listener)));
         accelerations.push(estimator_series(
-            index,
             name,
             acceleration_points(&listener.estimates, run.tick_hz),
         ));
@@ -172,14 +170,14 @@ fn estimates_figure(run: &Run) -> Figure {
 
 /// Following error with each estimator in the loop.
 fn error_figure(runs: &[(&str, Run)]) -> Figure {
-    let series = runs.iter().enumerate().map(|(index, (name, run))| {
+    let series = runs.iter().map(|(name, run)| {
         let error = points(
             &run.ticks,
             run.tick_hz,
             |_| 0.0,
             |tick| tick.outputs.following_error.to_num(),
         );
-        estimator_series(index, name, error)
+        estimator_series(name, error)
     });
     Figure::new(
         "16K20F3 Z: following error with each estimator in the loop",

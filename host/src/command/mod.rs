@@ -10,7 +10,12 @@ use std::path::Path;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::units::{TICK_HZ, checked};
 
+use crate::cli::OutputArgs;
 use crate::error::CommandError;
+use crate::plot::PlotError;
+
+/// Most ticks of a run or a replay: what is kept of them takes some 500 bytes each.
+const MAX_TICKS: u64 = 4_000_000;
 
 /// The estimator of that name.
 fn estimator(name: &str) -> Result<EstimatorConfig, CommandError> {
@@ -30,6 +35,61 @@ fn tick_rate(tick_hz: f64) -> Result<f64, CommandError> {
         .map_err(|error| CommandError::Usage(format!("{error} Hz")))
 }
 
+/// Refuses, before any work is done, output files that would destroy something.
+fn check_outputs(output: &OutputArgs, input: Option<&Path>) -> Result<(), CommandError> {
+    if let Some(path) = &output.plot
+        && !is_picture(path)
+    {
+        return Err(PlotError::Extension { path: path.clone() }.into());
+    }
+    let files = [("--csv", &output.csv), ("--plot", &output.plot)];
+    for (option, path) in files {
+        let Some(path) = path else { continue };
+        let refuse = |why: &str| {
+            let path = path.display();
+            Err(CommandError::Usage(format!("{option} {path}: {why}")))
+        };
+        if input.is_some_and(|input| same_file(input, path)) {
+            return refuse("is the file that is read: choose another name");
+        }
+        // A file is replaced as a whole, which is no way to treat a device or a pipe.
+        if path.metadata().is_ok_and(|found| !found.is_file()) {
+            return refuse("is not an ordinary file: choose the name of a file");
+        }
+    }
+    match (&output.csv, &output.plot) {
+        (Some(csv), Some(plot)) if csv == plot || same_file(csv, plot) => {
+            Err(CommandError::Usage(format!(
+                "--csv and --plot are both {}: give two names",
+                csv.display()
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// True for the formats of plots, so that another one is refused before the work and not after it.
+fn is_picture(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| {
+        extension.eq_ignore_ascii_case("svg") || extension.eq_ignore_ascii_case("png")
+    })
+}
+
+/// True where both paths lead to one file that exists.
+fn same_file(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => false,
+    }
+}
+
+/// A file without its folder, for a title.
+fn file_name(path: &Path) -> std::borrow::Cow<'_, str> {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+}
+
 /// Prints a report as JSON.
 fn print_json(report: &impl serde::Serialize) -> Result<(), CommandError> {
     let text = serde_json::to_string_pretty(report)
@@ -39,9 +99,11 @@ fn print_json(report: &impl serde::Serialize) -> Result<(), CommandError> {
 
 /// Prints to standard output; a reader that went away is an error, not a panic.
 fn print(text: &str) -> Result<(), CommandError> {
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(CommandError::write(Path::new("standard output")))
+    let mut output = std::io::stdout();
+    let printed = output.write_all(text.as_bytes());
+    printed
+        .and_then(|()| output.flush())
+        .map_err(CommandError::Print)
 }
 
 /// Writes a file that appears whole or not at all.

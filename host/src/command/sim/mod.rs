@@ -1,22 +1,29 @@
 //! `leadscrew sim`: a move there and back on a simulated machine.
 
+mod report;
+
 use std::path::Path;
 
-use leadscrew::estimator::EstimatorConfig;
+use leadscrew::params::ParamError;
+use leadscrew::units::checked;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::MoveAndBack;
-use serde::Serialize;
-use std::collections::BTreeMap;
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError};
 
-use super::{estimator, print, print_json, tick_rate, write_file};
+use super::{
+    MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
+};
 use crate::cli::SimArgs;
 use crate::error::CommandError;
 use crate::figures::{self, acceleration_points, panel, points, velocity_points};
 use crate::machine_file;
 use crate::plot::{Colour, Figure, Series};
-use crate::report::{CsvReport, LagFigures};
-use crate::simulation::{Accuracy, Run, RunSpec};
-use crate::statistics::Spread;
+use crate::progress::Progress;
+use crate::report::CsvReport;
+use crate::simulation::{Run, RunSpec};
+use report::Report;
+
+/// Longest move, mm.
+const MAX_MOVE_MM: f64 = 1e6;
 
 /// Columns of the CSV after the shared ones.
 const FURTHER_COLUMNS: [&str; 10] = [
@@ -41,15 +48,17 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
     if args.dump_machine {
         return print(&machine_file::dump(base, &machine));
     }
+    check_outputs(&args.output, Some(Path::new(&args.machine)))?;
     let spec = spec(args, machine)?;
-    let run = spec.run()?;
+    let run = spec.run().map_err(|error| blame_option(args, error))?;
     if let Some(path) = &args.output.csv {
         write_csv(path, &spec, &run)?;
     }
     if let Some(path) = &args.output.plot {
-        figure(&spec, &run).save(path)?;
+        let _drawing = Progress::endless("drawing");
+        figure(&args.machine, &spec, &run).save(path)?;
     }
-    let report = Report::new(args, &spec, &run);
+    let report = Report::new(&args.machine, &spec, &run);
     if args.output.json {
         print_json(&report)
     } else {
@@ -77,10 +86,14 @@ fn machine(name: &str) -> Result<(&str, MachineParams), CommandError> {
 }
 
 fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec, CommandError> {
+    let tick_hz = tick_rate(args.tick_hz)?;
+    let move_mm = checked("--move-mm", args.move_mm, -MAX_MOVE_MM, MAX_MOVE_MM)
+        .map_err(|error| CommandError::Usage(format!("{error} mm")))?;
+    check_length(args)?;
     let scenario = MoveAndBack {
-        move_mm: args.move_mm,
+        move_mm,
         feed_mm_per_min: args.feed,
-        ..MoveAndBack::standard(tick_rate(args.tick_hz)?)
+        ..MoveAndBack::standard(tick_hz)
     };
     Ok(RunSpec {
         machine,
@@ -90,10 +103,43 @@ fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec, CommandError>
     })
 }
 
+/// Refuses a run that is too long to be kept; the ramps that it adds to this do not matter.
+fn check_length(args: &SimArgs) -> Result<(), CommandError> {
+    let cruise_ticks = 2.0 * (args.move_mm / args.feed).abs() * 60.0 * args.tick_hz;
+    if args.feed > 0.0 && cruise_ticks > MAX_TICKS as f64 {
+        return Err(CommandError::Usage(format!(
+            "{} mm at {} mm/min and back are {cruise_ticks:.0} ticks, more than the {MAX_TICKS} that are kept in \
+             memory: shorten --move-mm, raise --feed or lower --tick-hz",
+            args.move_mm, args.feed
+        )));
+    }
+    Ok(())
+}
+
+/// An error of the scenario with the option that led to it: its parameters are named otherwise.
+fn blame_option(args: &SimArgs, error: ScenarioError) -> CommandError {
+    let feed = format!("--feed {}", args.feed);
+    let blamed = match &error {
+        ScenarioError::Param(ParamError::FeedTooHigh { .. }) => feed,
+        ScenarioError::Param(ParamError::Range(range)) => match range.name {
+            "max_feed_mm_per_min" | "max_velocity_d_per_tick" => feed,
+            // Right in m/s² and m/s³, too much in a tick this long or too little in one this short.
+            "max_acceleration_d_per_tick2" | "max_jerk_d_per_tick3" => {
+                format!("--tick-hz {}", args.tick_hz)
+            }
+            _ => return error.into(),
+        },
+        ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
+    };
+    CommandError::Usage(format!("{blamed}: {error}"))
+}
+
 fn write_csv(path: &Path, spec: &RunSpec, run: &Run) -> Result<(), CommandError> {
     write_file(path, |file| {
         let mut report = CsvReport::new(file, run.tick_hz, spec.estimator, &FURTHER_COLUMNS)?;
+        let mut progress = Progress::new("writing", run.ticks.len() as u64);
         for (index, tick) in run.ticks.iter().enumerate() {
+            progress.step();
             let outputs = &tick.outputs;
             let truth = run.truth.before(index, 0.0).unwrap_or_default();
             let further = [
@@ -115,7 +161,7 @@ fn write_csv(path: &Path, spec: &RunSpec, run: &Run) -> Result<(), CommandError>
 }
 
 /// Velocity, acceleration and following error of a run, by the estimator in the loop.
-fn figure(spec: &RunSpec, run: &Run) -> Figure {
+fn figure(machine: &str, spec: &RunSpec, run: &Run) -> Figure {
     let name = spec.estimator.name();
     let estimates: Vec<_> = run.ticks.iter().map(|tick| tick.outputs.estimate).collect();
     let truth = run.true_states();
@@ -130,8 +176,11 @@ fn figure(spec: &RunSpec, run: &Run) -> Figure {
     );
     Figure::new(
         format!(
-            "{} mm at {} mm/min and back",
-            spec.scenario.move_mm, spec.scenario.feed_mm_per_min
+            "{}: {} mm at {} mm/min and back, {} Hz",
+            file_name(Path::new(machine)),
+            spec.scenario.move_mm,
+            spec.scenario.feed_mm_per_min,
+            run.tick_hz
         ),
         vec![
             panel(
@@ -154,130 +203,12 @@ fn figure(spec: &RunSpec, run: &Run) -> Figure {
             ),
             panel(
                 figures::FOLLOWING_ERROR,
-                vec![Series::line(name, error, Colour::Vermillion)],
+                vec![Series::line(
+                    format!("with {name}"),
+                    error,
+                    Colour::Vermillion,
+                )],
             ),
         ],
     )
-}
-
-/// Figures of a run, for people and programs.
-#[derive(Serialize)]
-struct Report {
-    schema: &'static str,
-    machine: String,
-    move_mm: f64,
-    feed_mm_per_min: f64,
-    tick_hz: f64,
-    seed: u64,
-    estimator: &'static str,
-    ticks: usize,
-    digest: String,
-    units: Units,
-    following_error: FollowingError,
-    estimators: BTreeMap<&'static str, EstimatorFigures>,
-}
-
-#[derive(Serialize)]
-struct Units {
-    position: &'static str,
-    velocity: &'static str,
-    acceleration: &'static str,
-    lag: &'static str,
-}
-
-#[derive(Serialize)]
-struct FollowingError {
-    peak: f64,
-    rms: f64,
-    at_end: f64,
-}
-
-/// Errors of an estimator against the truth at its own instant, while a move runs.
-#[derive(Serialize)]
-struct EstimatorFigures {
-    velocity_error_rms: f64,
-    acceleration_error_rms: f64,
-    tachogenerator_difference_rms: f64,
-    #[serde(flatten)]
-    lags: LagFigures,
-}
-
-impl EstimatorFigures {
-    fn new(config: &EstimatorConfig, accuracy: &Accuracy) -> Self {
-        Self {
-            velocity_error_rms: accuracy.velocity.rms(),
-            acceleration_error_rms: accuracy.acceleration.rms(),
-            tachogenerator_difference_rms: accuracy.against_tachogenerator.rms(),
-            lags: config.into(),
-        }
-    }
-}
-
-impl Report {
-    fn new(args: &SimArgs, spec: &RunSpec, run: &Run) -> Self {
-        let error: Spread = run.following_error();
-        let at_end = run
-            .ticks
-            .last()
-            .map_or(0.0, |tick| tick.outputs.following_error.to_num());
-        let figures = |listener: &crate::simulation::Listener| {
-            (
-                listener.config.name(),
-                EstimatorFigures::new(&listener.config, &run.accuracy(listener)),
-            )
-        };
-        Self {
-            schema: "leadscrew/sim/1",
-            machine: args.machine.clone(),
-            move_mm: spec.scenario.move_mm,
-            feed_mm_per_min: spec.scenario.feed_mm_per_min,
-            tick_hz: spec.scenario.tick_hz,
-            seed: spec.seed,
-            estimator: spec.estimator.name(),
-            ticks: run.ticks.len(),
-            digest: format!("{:016x}", run.digest),
-            units: Units {
-                position: "d",
-                velocity: "d/tick",
-                acceleration: "d/tick²",
-                lag: "tick",
-            },
-            following_error: FollowingError {
-                peak: error.peak(),
-                rms: error.rms(),
-                at_end,
-            },
-            estimators: run.listeners.iter().map(figures).collect(),
-        }
-    }
-
-    fn to_text(&self) -> String {
-        let mut text = format!(
-            "{}: {} mm at {} mm/min and back, {} Hz, {} in the loop, seed {}\n\
-             {} ticks, digest {}\n\
-             following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n",
-            self.machine,
-            self.move_mm,
-            self.feed_mm_per_min,
-            self.tick_hz,
-            self.estimator,
-            self.seed,
-            self.ticks,
-            self.digest,
-            self.following_error.peak,
-            self.following_error.rms,
-            self.following_error.at_end,
-        );
-        for (name, figures) in &self.estimators {
-            text += &format!(
-                "{name:12} σ_v {:.4} d/tick, σ_a {:.4} d/tick², lags {:.2} {:.2} {:.2} ticks\n",
-                figures.velocity_error_rms,
-                figures.acceleration_error_rms,
-                figures.lags.lag_x_ticks,
-                figures.lags.lag_v_ticks,
-                figures.lags.lag_a_ticks,
-            );
-        }
-        text
-    }
 }

@@ -1,0 +1,211 @@
+//! `leadscrew replay`: the core on a capture of a real encoder.
+
+mod report;
+
+use std::fmt;
+use std::path::Path;
+
+use leadscrew::capture::Unwrapper;
+use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
+
+use super::{
+    MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
+};
+use crate::cli::ReplayArgs;
+use crate::error::CommandError;
+use crate::figures::{self, acceleration_points, estimator_series, panel, velocity_points};
+use crate::plot::Figure;
+use crate::progress::Progress;
+use crate::recording::{self, ChannelSelection, Recording};
+use crate::report::CsvReport;
+use crate::sampler::{Sampler, Totals};
+use crate::simulation::all_estimators;
+use report::Report;
+
+/// The estimator of the CSV where none is asked for.
+const DEFAULT_ESTIMATOR: &str = "exponential";
+
+/// Runs the command.
+///
+/// # Errors
+/// Bad usage, a capture that cannot be read, or a file that cannot be written.
+pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
+    let tick_hz = tick_rate(args.tick_hz)?;
+    let configs = match &args.estimator {
+        Some(name) => vec![estimator(name)?],
+        None => all_estimators(),
+    };
+    let span = Span::new(args)?;
+    let channels = ChannelSelection {
+        a: args.a.clone(),
+        b: args.b.clone(),
+        z: args.z.clone(),
+    };
+    check_outputs(&args.output, Some(&args.file))?;
+    let recording = {
+        let _reading = Progress::endless("reading");
+        recording::read(&args.file, &channels, args.samplerate)?
+    };
+    let replay = Replay::of(&recording, tick_hz, &configs).map_err(|TooLong { ticks }| {
+        CommandError::Data(format!(
+            "{}: lasts for {ticks} ticks at {tick_hz} Hz, more than the {MAX_TICKS} that are kept in memory: \
+             lower --tick-hz or export a shorter range",
+            args.file.display()
+        ))
+    })?;
+
+    if let Some(path) = &args.output.csv {
+        replay.write_csv(path)?;
+    }
+    if let Some(path) = &args.output.plot {
+        let _drawing = Progress::endless("drawing");
+        replay.figure(&args.file).save(path)?;
+    }
+    let report = Report::new(&replay, &span);
+    if args.output.json {
+        print_json(&report)
+    } else {
+        print(&report.to_text(&args.file))
+    }
+}
+
+/// Points of a curve from estimates at a control rate.
+type Curve = fn(&[Estimate], f64) -> Vec<(f64, f64)>;
+
+/// A recording run through the core.
+struct Replay {
+    tick_hz: f64,
+    totals: Totals,
+    overspeed_ticks: u32,
+    counts: Vec<i64>,
+    tracks: Vec<Track>,
+}
+
+/// A recording that is too long to be kept.
+struct TooLong {
+    ticks: u64,
+}
+
+/// The estimates of one estimator.
+struct Track {
+    config: EstimatorConfig,
+    estimates: Vec<Estimate>,
+}
+
+impl Replay {
+    fn of(
+        recording: &Recording,
+        tick_hz: f64,
+        configs: &[EstimatorConfig],
+    ) -> Result<Self, TooLong> {
+        let mut sampler = Sampler::new(recording, tick_hz);
+        let ticks = sampler.ticks();
+        if ticks > MAX_TICKS {
+            return Err(TooLong { ticks });
+        }
+        let mut progress = Progress::new("replaying", ticks);
+        let mut unwrapper = Unwrapper::new();
+        let mut estimators: Vec<_> = configs
+            .iter()
+            .map(|&config| Estimator::new(config))
+            .collect();
+        let track = |&config: &EstimatorConfig| Track {
+            config,
+            estimates: Vec::new(),
+        };
+        let mut tracks: Vec<_> = configs.iter().map(track).collect();
+        let mut counts = Vec::new();
+        while let Some(capture) = sampler.next_capture() {
+            let observation = unwrapper.unwrap(&capture);
+            counts.push(observation.count);
+            for (estimator, track) in estimators.iter_mut().zip(&mut tracks) {
+                track.estimates.push(estimator.update(&observation));
+            }
+            progress.step();
+        }
+        Ok(Self {
+            tick_hz,
+            totals: sampler.totals(),
+            overspeed_ticks: unwrapper.health().overspeed_ticks,
+            counts,
+            tracks,
+        })
+    }
+
+    fn write_csv(&self, path: &Path) -> Result<(), CommandError> {
+        let wanted = self
+            .tracks
+            .iter()
+            .find(|track| track.config.name() == DEFAULT_ESTIMATOR);
+        let Some(track) = wanted.or(self.tracks.first()) else {
+            return Ok(());
+        };
+        write_file(path, |file| {
+            let mut report = CsvReport::new(file, self.tick_hz, track.config, &[])?;
+            let mut progress = Progress::new("writing", self.counts.len() as u64);
+            for (tick, (estimate, count)) in track.estimates.iter().zip(&self.counts).enumerate() {
+                progress.step();
+                report.row(tick as u64, *count, estimate, &[])?;
+            }
+            report.finish()
+        })
+    }
+
+    fn figure(&self, file: &Path) -> Figure {
+        let curves = |points: Curve| {
+            let series = |track: &Track| {
+                estimator_series(track.config.name(), points(&track.estimates, self.tick_hz))
+            };
+            self.tracks.iter().map(series).collect()
+        };
+        Figure::new(
+            format!("{} at {} Hz", file_name(file), self.tick_hz),
+            vec![
+                panel(figures::VELOCITY, curves(velocity_points)),
+                panel(figures::ACCELERATION, curves(acceleration_points)),
+            ],
+        )
+    }
+}
+
+/// The span of time over which acceleration is fitted, of what lies after warm-up.
+struct Span {
+    from_s: f64,
+    to_s: f64,
+}
+
+impl Span {
+    fn new(args: &ReplayArgs) -> Result<Self, CommandError> {
+        let (from, to) = (
+            args.from_s.unwrap_or(0.0),
+            args.to_s.unwrap_or(f64::INFINITY),
+        );
+        if from >= 0.0 && from < to {
+            Ok(Self {
+                from_s: from,
+                to_s: to,
+            })
+        } else {
+            Err(CommandError::Usage(format!(
+                "--from-s {from} --to-s {to}: the span must begin at 0 or later and end after its beginning"
+            )))
+        }
+    }
+
+    fn contains(&self, tick: usize, tick_hz: f64) -> bool {
+        (self.from_s..=self.to_s).contains(&(tick as f64 / tick_hz))
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("after warm-up")?;
+        if self.from_s > 0.0 {
+            write!(f, ", from {} s", self.from_s)?;
+        }
+        if self.to_s.is_finite() {
+            write!(f, ", to {} s", self.to_s)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,141 @@
+//! Figures of a run, for people and programs.
+
+use std::collections::BTreeMap;
+
+use leadscrew::estimator::EstimatorConfig;
+use serde::Serialize;
+
+use crate::report::{LagFigures, figure_or_dash, text_table};
+use crate::simulation::{Accuracy, Listener, Run, RunSpec};
+use crate::statistics::Spread;
+
+/// The report of a run.
+#[derive(Serialize)]
+pub(super) struct Report {
+    schema: &'static str,
+    machine: String,
+    move_mm: f64,
+    feed_mm_per_min: f64,
+    tick_hz: f64,
+    seed: u64,
+    estimator: &'static str,
+    ticks: usize,
+    digest: String,
+    units: Units,
+    following_error: FollowingError,
+    estimators: BTreeMap<&'static str, EstimatorFigures>,
+}
+
+#[derive(Serialize)]
+struct Units {
+    position: &'static str,
+    velocity: &'static str,
+    acceleration: &'static str,
+    lag: &'static str,
+}
+
+#[derive(Serialize)]
+struct FollowingError {
+    peak: f64,
+    rms: f64,
+    at_end: f64,
+}
+
+/// Errors of an estimator against the truth at its own instant, while a move runs; null where none did.
+#[derive(Serialize)]
+struct EstimatorFigures {
+    velocity_error_rms: Option<f64>,
+    acceleration_error_rms: Option<f64>,
+    tachogenerator_difference_rms: Option<f64>,
+    #[serde(flatten)]
+    lags: LagFigures,
+}
+
+impl EstimatorFigures {
+    fn new(config: &EstimatorConfig, accuracy: &Accuracy) -> Self {
+        Self {
+            velocity_error_rms: accuracy.velocity.rms_of_some(),
+            acceleration_error_rms: accuracy.acceleration.rms_of_some(),
+            tachogenerator_difference_rms: accuracy.against_tachogenerator.rms_of_some(),
+            lags: config.into(),
+        }
+    }
+}
+
+impl Report {
+    /// The report of `run`, which `spec` asked for on the machine called `machine`.
+    pub(super) fn new(machine: &str, spec: &RunSpec, run: &Run) -> Self {
+        let error: Spread = run.following_error();
+        let at_end = run
+            .ticks
+            .last()
+            .map_or(0.0, |tick| tick.outputs.following_error.to_num());
+        let figures = |listener: &Listener| {
+            (
+                listener.config.name(),
+                EstimatorFigures::new(&listener.config, &run.accuracy(listener)),
+            )
+        };
+        Self {
+            schema: "leadscrew/sim/1",
+            machine: machine.to_owned(),
+            move_mm: spec.scenario.move_mm,
+            feed_mm_per_min: spec.scenario.feed_mm_per_min,
+            tick_hz: spec.scenario.tick_hz,
+            seed: spec.seed,
+            estimator: spec.estimator.name(),
+            ticks: run.ticks.len(),
+            digest: format!("{:016x}", run.digest),
+            units: Units {
+                position: "d",
+                velocity: "d/tick",
+                acceleration: "d/tick²",
+                lag: "tick",
+            },
+            following_error: FollowingError {
+                peak: error.peak(),
+                rms: error.rms(),
+                at_end,
+            },
+            estimators: run.listeners.iter().map(figures).collect(),
+        }
+    }
+
+    /// The report for people.
+    pub(super) fn to_text(&self) -> String {
+        let mut table = text_table(&[
+            "estimator",
+            "sigma v\nd/tick",
+            "sigma a\nd/tick²",
+            "tacho\nd/tick",
+            "lag x/v/a\nticks",
+        ]);
+        for (name, figures) in &self.estimators {
+            table.add_row([
+                (*name).to_owned(),
+                figure_or_dash(figures.velocity_error_rms, 4),
+                figure_or_dash(figures.acceleration_error_rms, 4),
+                figure_or_dash(figures.tachogenerator_difference_rms, 4),
+                figures.lags.to_string(),
+            ]);
+        }
+        format!(
+            "{}: {} mm at {} mm/min and back, {} Hz, {} in the loop, seed {}\n\
+             {} ticks, digest {}\n\
+             following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n\n\
+             {}\n",
+            self.machine,
+            self.move_mm,
+            self.feed_mm_per_min,
+            self.tick_hz,
+            self.estimator,
+            self.seed,
+            self.ticks,
+            self.digest,
+            self.following_error.peak,
+            self.following_error.rms,
+            self.following_error.at_end,
+            table.trim_fmt(),
+        )
+    }
+}

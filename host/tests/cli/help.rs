@@ -1,0 +1,87 @@
+//! What the command says of itself.
+
+use crate::{Folder, assert_says};
+
+#[test]
+fn help_names_every_option_its_unit_and_its_default() {
+    let folder = Folder::new();
+    let general = folder.printed("--help");
+    assert_says(
+        &general,
+        &[
+            "sim",
+            "replay",
+            "target/leadscrew",
+            "Exit codes: 0 done, 1 the job failed, 2 bad usage",
+        ],
+    );
+    let sim = folder.printed("sim --help");
+    assert_says(
+        &sim,
+        &[
+            "--machine",
+            "16k20f3-bare",
+            "--move-mm",
+            "[default: 300]",
+            "--feed",
+            "mm/min",
+            "[default: 9000]",
+            "--tick-hz",
+            "100 to 40000",
+            "--estimator",
+            "gaussian",
+            "--seed",
+            "--dump-machine",
+            "--json",
+            "--csv",
+            "--plot",
+        ],
+    );
+    let replay = folder.printed("replay --help");
+    assert_says(
+        &replay,
+        &[
+            "<FILE>",
+            "VCD",
+            "sigrok CSV",
+            "Saleae",
+            "--tick-hz",
+            "[default: 1000]",
+            "--a",
+            "--b",
+            "--z",
+            "--samplerate",
+            "--estimator",
+            "--from-s",
+            "--to-s",
+            "--json",
+            "--csv",
+            "--plot",
+        ],
+    );
+}
+
+#[test]
+fn the_version_is_that_of_the_package() {
+    let printed = Folder::new().printed("--version");
+    assert_eq!(
+        printed.trim(),
+        concat!("leadscrew ", env!("CARGO_PKG_VERSION"))
+    );
+}
+
+#[test]
+fn unknown_words_are_bad_usage() {
+    let folder = Folder::new();
+    for arguments in [
+        "simulate",
+        "sim extra",
+        "sim --speed 5",
+        "replay",
+        "--json",
+        "sim --csv",
+    ] {
+        let message = folder.refused(2, arguments);
+        assert_says(&message, &["--help"]);
+    }
+}
