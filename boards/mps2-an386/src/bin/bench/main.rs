@@ -7,6 +7,7 @@
 
 mod adversary;
 mod samples;
+mod simulator;
 mod staged;
 mod standard_move;
 
@@ -35,7 +36,8 @@ fn main() -> ! {
 
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
-    adversary::run(counter)
+    adversary::run(counter)?;
+    simulator::run(counter)
 }
 
 fn shift_argument() -> u32 {

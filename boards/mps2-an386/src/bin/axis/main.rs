@@ -19,30 +19,29 @@
 #![no_std]
 #![no_main]
 
+mod machine;
+mod thread;
+
+use core::sync::atomic::AtomicU32;
+
 use board_mps2_an386::handoff::{Giver, Handoff, Taker};
 use board_mps2_an386::interrupts::{Interrupt, interrupt};
 use board_mps2_an386::isr_cell::IsrCell;
 use board_mps2_an386::timer::{TIMER0, TIMER1, Timer};
-use board_mps2_an386::{CLOCK_HZ, arguments, exit_failure, exit_success, time_driver};
-use core::sync::atomic::{AtomicU32, Ordering};
+use board_mps2_an386::{CLOCK_HZ, arguments, exit_failure, time_driver};
 use cortex_m::peripheral::NVIC;
 use embassy_executor::Spawner;
-use embassy_time::Instant;
-
-use embassy_time::Timer as Delay;
 use heapless::spsc::{Consumer, Producer, Queue};
-use leadscrew::axis::{Axis, Inputs, Outputs};
-use leadscrew::estimator::EstimatorConfig;
-use leadscrew::hal::Encoder;
+use leadscrew::axis::Outputs;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::{AxisControl, Request};
 use leadscrew_app::options::Options;
-use leadscrew_app::telemetry::{self, Plan, Ready, Sink};
-use leadscrew_app::tick::{Counters, Counts, Runtime, TickTimer};
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
-use leadscrew_hal_mock::trace::TraceDigest;
+use leadscrew_app::telemetry::{Plan, Ready};
+use leadscrew_app::tick::{Counters, Runtime, TickTimer};
+use leadscrew_hal_mock::machine::Machine;
 use static_cell::{ConstStaticCell, StaticCell};
+
+use machine::{MachineState, Scenario};
 
 /// The tick's distance behind the machine step, in 1/8 of the period.
 const TICK_PHASE: u32 = 6;
@@ -62,7 +61,6 @@ static TICK: IsrCell<TickState> = IsrCell::empty();
 static MACHINE: IsrCell<MachineState> = IsrCell::empty();
 static COUNTERS: Counters = Counters::new();
 static READY: Ready = Ready::new();
-
 /// Requests that did not fit.
 static REFUSED: AtomicU32 = AtomicU32::new(0);
 
@@ -71,42 +69,6 @@ struct TickState {
     inputs: Taker<Machine>,
     outputs: Giver<Outputs>,
     ticks_left: u32,
-}
-
-struct MachineState {
-    inputs: Giver<Machine>,
-    outputs: Taker<Outputs>,
-    /// What the tick put out last; before the first tick nothing.
-    applied: Outputs,
-    digest: TraceDigest,
-}
-
-impl MachineState {
-    /// Moves the machine under the outputs of the last tick.
-    fn step(&mut self) {
-        self.account();
-        let Outputs {
-            command, enabled, ..
-        } = self.applied;
-        // Not taken: the tick did not run, and the next one finds these inputs again as one too few.
-        let _ = self.inputs.give(|machine| machine.step(command, enabled));
-    }
-
-    /// Takes the last tick into the digest, while the machine still shows what that tick saw.
-    fn account(&mut self) {
-        let Some(outputs) = self.outputs.take(|outputs| *outputs) else {
-            return;
-        };
-        self.applied = outputs;
-        let digest = &mut self.digest;
-        let _ = self.inputs.look(|machine| {
-            let inputs = Inputs {
-                capture: machine.capture(),
-                enable: outputs.enabled,
-            };
-            digest.update(&inputs, &outputs);
-        });
-    }
 }
 
 struct TickClock(&'static Timer);
@@ -180,8 +142,8 @@ async fn main(spawner: Spawner) {
         ticks,
         report_every: options.tick_hz,
     };
-    spawner.spawn(report(records, plan).expect("spawned once"));
-    spawner.spawn(operate(requests, script).expect("spawned once"));
+    spawner.spawn(thread::report(records, plan).expect("spawned once"));
+    spawner.spawn(thread::operate(requests, script).expect("spawned once"));
     defmt::info!("axis: {=u32} ticks at {=u32} Hz", ticks, options.tick_hz);
     TIMER0.start(period, period);
     TIMER1.start(period, period + period / 8 * TICK_PHASE);
@@ -200,32 +162,6 @@ fn options() -> Options {
     }
     options
 }
-
-/// What the run is made of.
-struct Scenario {
-    machine: Machine,
-    axis: Axis,
-    script: Script,
-}
-
-impl Scenario {
-    /// The standard move on the reference machine, seed 1, exponential smoothing in the loop.
-    fn new(options: &Options) -> Result<Self, ScenarioError> {
-        let tick_hz = f64::from(options.tick_hz);
-        let scenario = MoveAndBack::standard(tick_hz);
-        let machine = MachineParams::z_16k20f3();
-        let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
-        let params = scenario.axis_params(&machine, estimator)?;
-        let config = params.validate()?;
-        Ok(Self {
-            script: Script::new(&scenario, params.motion.counts_per_mm, &config)?,
-            machine: Machine::new(&machine, tick_hz, SEED)?,
-            axis: Axis::new(config),
-        })
-    }
-}
-
-const SEED: u64 = 1;
 
 /// Hands every interrupt its state; gives the ends of the queues that thread mode holds.
 fn wire(
@@ -250,40 +186,12 @@ fn wire(
         outputs: to_machine,
         ticks_left: ticks,
     };
-    let machine = MachineState {
-        inputs: to_tick,
-        outputs: from_tick,
-        applied: Outputs::default(),
-        digest: TraceDigest::new(),
-    };
+    let machine = MachineState::new(to_tick, from_tick);
     assert!(
         TICK.put(tick) && MACHINE.put(machine),
         "interrupts are masked"
     );
     (ask, consumer)
-}
-
-/// The person at the panel: enables the axis and hands over each move once the one before has begun.
-#[embassy_executor::task]
-async fn operate(mut requests: Producer<'static, Request>, script: Script) {
-    let mut ask = |request| {
-        if requests.enqueue(request).is_err() {
-            REFUSED.store(REFUSED.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
-        }
-    };
-    ask(Request::Enable(true));
-    let mut begun = 1;
-    for next in script.moves {
-        while COUNTERS.read().ticks < begun {
-            Delay::after_millis(1).await;
-        }
-        ask(Request::Move {
-            profile: next.profile,
-            start: next.start,
-        });
-        // Not before the last setpoint of this one may another one wait.
-        begun = next.start + next.profile.ticks();
-    }
 }
 
 fn unmask_interrupts() {
@@ -301,68 +209,5 @@ fn unmask_interrupts() {
             core.NVIC.set_priority(line, priority);
             NVIC::unmask(line);
         }
-    }
-}
-
-#[embassy_executor::task]
-async fn report(mut records: Consumer<'static, Record>, plan: Plan) {
-    let mut trace = Trace::default();
-    let counts = telemetry::run(&mut trace, &mut records, &READY, &COUNTERS, plan).await;
-    defmt::info!(
-        "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
-        counts.ticks,
-        counts.late,
-        counts.overlong,
-        counts.lost_records
-    );
-    defmt::info!(
-        "worst start {=u32} clocks, worst end {=u32} clocks after due",
-        counts.worst_start,
-        counts.worst_end
-    );
-    let digest = MACHINE.with(|state| {
-        state.account();
-        state.digest.value()
-    });
-    defmt::info!(
-        "digest {=u64:016x} of {=u32} ticks",
-        digest.unwrap_or(0),
-        trace.records
-    );
-    let refused = REFUSED.load(Ordering::Relaxed);
-    if counts.is_clean() && trace.records == plan.ticks && refused == 0 {
-        exit_success();
-    }
-    defmt::error!(
-        "failed: ticks were late, overlong or not recorded, or {=u32} requests refused",
-        refused
-    );
-    exit_failure()
-}
-
-/// Follows the records.
-#[derive(Default)]
-struct Trace {
-    records: u32,
-    last: Record,
-}
-
-impl Sink for Trace {
-    type Record = Record;
-
-    fn record(&mut self, record: &Record) {
-        self.records += 1;
-        self.last = *record;
-    }
-
-    fn progress(&mut self, counts: &Counts) {
-        defmt::info!(
-            "tick {=u32} at {=u64} us: count {=i32}, velocity {=i32} d/tick, late {=u32}",
-            counts.ticks,
-            Instant::now().as_micros(),
-            self.last.count.cast_signed(),
-            self.last.velocity >> 20,
-            counts.late
-        );
     }
 }

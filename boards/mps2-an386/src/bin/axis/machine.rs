@@ -1,0 +1,92 @@
+//! The machine in the guest: what its interrupt does, and what the run is made of.
+
+use board_mps2_an386::handoff::{Giver, Taker};
+use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew::hal::Encoder;
+use leadscrew_app::options::Options;
+use leadscrew_hal_mock::machine::{Machine, MachineParams};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
+use leadscrew_hal_mock::trace::TraceDigest;
+
+/// Seed of the encoder's errors and of all noise.
+const SEED: u64 = 1;
+
+/// What the run is made of.
+pub struct Scenario {
+    /// The machine.
+    pub machine: Machine,
+    /// The axis on it.
+    pub axis: Axis,
+    /// The moves.
+    pub script: Script,
+}
+
+impl Scenario {
+    /// The standard move on the reference machine, seed 1, exponential smoothing in the loop.
+    pub fn new(options: &Options) -> Result<Self, ScenarioError> {
+        let tick_hz = f64::from(options.tick_hz);
+        let scenario = MoveAndBack::standard(tick_hz);
+        let machine = MachineParams::z_16k20f3();
+        let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
+        let params = scenario.axis_params(&machine, estimator)?;
+        let config = params.validate()?;
+        Ok(Self {
+            script: Script::new(&scenario, params.motion.counts_per_mm, &config)?,
+            machine: Machine::new(&machine, tick_hz, SEED)?,
+            axis: Axis::new(config),
+        })
+    }
+}
+
+/// The machine interrupt's state.
+pub struct MachineState {
+    inputs: Giver<Machine>,
+    outputs: Taker<Outputs>,
+    /// What the tick put out last; before the first tick nothing.
+    applied: Outputs,
+    digest: TraceDigest,
+}
+
+impl MachineState {
+    /// The state before the first step; the machine is in the handoff to the tick.
+    pub fn new(inputs: Giver<Machine>, outputs: Taker<Outputs>) -> Self {
+        Self {
+            inputs,
+            outputs,
+            applied: Outputs::default(),
+            digest: TraceDigest::new(),
+        }
+    }
+
+    /// Digest of the ticks so far.
+    pub fn digest(&self) -> u64 {
+        self.digest.value()
+    }
+
+    /// Moves the machine under the outputs of the last tick.
+    pub fn step(&mut self) {
+        self.account();
+        let Outputs {
+            command, enabled, ..
+        } = self.applied;
+        // Not taken: the tick did not run, and the next one finds these inputs again as one too few.
+        let _ = self.inputs.give(|machine| machine.step(command, enabled));
+    }
+
+    /// Takes the last tick into the digest, while the machine still shows what that tick saw.
+    pub fn account(&mut self) {
+        let Some(outputs) = self.outputs.take(|outputs| *outputs) else {
+            return;
+        };
+        self.applied = outputs;
+        let digest = &mut self.digest;
+        let _ = self.inputs.look(|machine| {
+            let inputs = Inputs {
+                capture: machine.capture(),
+                enable: outputs.enabled,
+            };
+            digest.update(&inputs, &outputs);
+        });
+    }
+}

@@ -1,0 +1,101 @@
+//! Thread mode: the person at the panel, and the report.
+
+use core::sync::atomic::Ordering;
+
+use board_mps2_an386::{exit_failure, exit_success};
+use embassy_time::{Instant, Timer};
+use heapless::spsc::{Consumer, Producer};
+use leadscrew::telemetry::Record;
+use leadscrew_app::axis_control::Request;
+use leadscrew_app::telemetry::{self, Plan, Sink};
+use leadscrew_app::tick::Counts;
+use leadscrew_hal_mock::scenario::Script;
+
+use crate::{COUNTERS, MACHINE, READY, REFUSED};
+
+/// The person at the panel: enables the axis and hands over each move once the one before has begun.
+#[embassy_executor::task]
+pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
+    let mut ask = |request| {
+        if requests.enqueue(request).is_err() {
+            REFUSED.store(REFUSED.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        }
+    };
+    ask(Request::Enable(true));
+    let mut begun = 1;
+    for next in script.moves {
+        while COUNTERS.read().ticks < begun {
+            Timer::after_millis(1).await;
+        }
+        ask(Request::Move {
+            profile: next.profile,
+            start: next.start,
+        });
+        // Not before the last setpoint of this one may another one wait.
+        begun = next.start + next.profile.ticks();
+    }
+}
+
+/// Follows the records to the end of the run and ends the program.
+#[embassy_executor::task]
+pub async fn report(mut records: Consumer<'static, Record>, plan: Plan) {
+    let mut trace = Trace::default();
+    let counts = telemetry::run(&mut trace, &mut records, &READY, &COUNTERS, plan).await;
+    defmt::info!(
+        "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
+        counts.ticks,
+        counts.late,
+        counts.overlong,
+        counts.lost_records
+    );
+    defmt::info!(
+        "worst start {=u32} clocks, worst end {=u32} clocks after due",
+        counts.worst_start,
+        counts.worst_end
+    );
+    let digest = MACHINE.with(|state| {
+        state.account();
+        state.digest()
+    });
+    defmt::info!(
+        "digest {=u64:016x} of {=u32} ticks",
+        digest.unwrap_or(0),
+        trace.records
+    );
+    let refused = REFUSED.load(Ordering::Relaxed);
+    if counts.is_clean() && trace.records == plan.ticks && refused == 0 {
+        exit_success();
+    }
+    defmt::error!(
+        "failed: ticks were late, overlong or not recorded, or {=u32} requests refused",
+        refused
+    );
+    exit_failure()
+}
+
+/// Follows the records.
+#[derive(Default)]
+struct Trace {
+    records: u32,
+    last: Record,
+}
+
+impl Sink for Trace {
+    type Record = Record;
+
+    fn record(&mut self, record: &Record) {
+        self.records += 1;
+        self.last = *record;
+    }
+
+    fn progress(&mut self, counts: &Counts) {
+        defmt::info!(
+            "tick {=u32} at {=u64} us: count {=i32}, velocity {=i32} d/tick, late {=u32}",
+            counts.ticks,
+            Instant::now().as_micros(),
+            self.last.count.cast_signed(),
+            self.last.velocity >> 20,
+            counts.late
+        );
+    }
+}
