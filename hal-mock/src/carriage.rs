@@ -5,7 +5,7 @@ use leadscrew::units::{AxisScale, RangeError};
 
 use crate::arc::State;
 use crate::play::Play;
-use crate::wave::sine;
+use crate::wave::{phase, sine};
 
 leadscrew::parameter_table! {
     /// The carriage of the 16K20F3 on its screw.
@@ -40,16 +40,33 @@ impl CarriageParams {
 }
 
 /// The carriage.
+///
+/// Its resonance is kept relative to the nut that drives it: there f32 is enough, and cheap.
 #[derive(Clone, Debug)]
 pub struct Carriage {
-    revolution: f64,
+    turns_per_d: f64,
     slope: f64,
-    wobble: f64,
+    wobble: f32,
     play: Play,
-    stiffness: f64,
-    damping_rate: f64,
-    driver: State,
-    state: State,
+    resonance: Option<Resonance>,
+    nut: Nut,
+    swing: Swing,
+}
+
+/// Where the nut would put a rigid carriage.
+#[derive(Clone, Copy, Debug, Default)]
+struct Nut {
+    position: f64,
+    /// Gain of position in the last tick.
+    velocity: f64,
+}
+
+/// The carriage less the nut in d and ticks; the acceleration is the carriage's own.
+#[derive(Clone, Copy, Debug, Default)]
+struct Swing {
+    position: f32,
+    velocity: f32,
+    acceleration: f32,
 }
 
 impl Carriage {
@@ -63,77 +80,96 @@ impl Carriage {
         position: f64,
     ) -> Result<Self, RangeError> {
         params.check()?;
-        let omega = core::f64::consts::TAU * params.resonance_hz / scale.tick_hz();
         let mut carriage = Self {
-            revolution: scale.counts_from_mm(params.pitch_mm),
+            turns_per_d: 1.0 / scale.counts_from_mm(params.pitch_mm),
             slope: params.screw_error_per_m / 1000.0,
-            wobble: scale.counts_from_mm(params.screw_wobble_mm),
+            wobble: scale.counts_from_mm(params.screw_wobble_mm) as f32,
             play: Play::new(scale.counts_from_mm(params.backlash_mm), position),
-            stiffness: omega * omega,
-            damping_rate: params.resonance_damping * omega,
-            driver: State::default(),
-            state: State::default(),
+            resonance: Resonance::new(params, scale.tick_hz()),
+            nut: Nut::default(),
+            swing: Swing::default(),
         };
-        carriage.driver.position = carriage.nut(position);
-        carriage.state.position = carriage.driver.position;
+        carriage.nut.position = carriage.driven_to(position);
         Ok(carriage)
     }
 
     /// State of the carriage, d and ticks.
     #[must_use]
-    pub const fn state(&self) -> State {
-        self.state
+    pub fn state(&self) -> State {
+        State {
+            position: self.nut.position + f64::from(self.swing.position),
+            velocity: self.nut.velocity + f64::from(self.swing.velocity),
+            acceleration: f64::from(self.swing.acceleration),
+        }
     }
 
     /// Follows the shaft to the end of a tick.
     pub fn step(&mut self, shaft: State) {
-        let position = self.nut(shaft.position);
-        let driver = State {
-            position,
-            velocity: position - self.driver.position,
-            acceleration: 0.0,
+        let position = self.driven_to(shaft.position);
+        let velocity = position - self.nut.position;
+        let gain = (velocity - self.nut.velocity) as f32;
+        self.nut = Nut { position, velocity };
+        self.swing = match &self.resonance {
+            Some(resonance) => resonance.step(self.swing, gain),
+            None => Swing {
+                acceleration: gain,
+                ..Swing::default()
+            },
         };
-        if self.stiffness == 0.0 {
-            let acceleration = driver.velocity - self.state.velocity;
-            self.state = State {
-                acceleration,
-                ..driver
-            };
-        } else {
-            self.swing(driver);
-        }
-        self.driver = driver;
     }
 
-    /// Where the nut would put a rigid carriage.
-    fn nut(&mut self, shaft: f64) -> f64 {
+    /// Where the shaft at `shaft` puts the nut.
+    fn driven_to(&mut self, shaft: f64) -> f64 {
         let (driven, _) = self.play.follow(shaft);
-        let wobble = if self.wobble == 0.0 {
-            0.0
-        } else {
-            self.wobble * sine(driven / self.revolution)
-        };
-        driven + self.slope * driven + wobble
+        let mut position = driven;
+        if self.slope != 0.0 {
+            position += self.slope * driven;
+        }
+        if self.wobble != 0.0 {
+            position += f64::from(self.wobble * sine(phase(driven * self.turns_per_d)));
+        }
+        position
+    }
+}
+
+/// The resonance, by the trapezoidal rule: x″ = ω²(d − x) + 2ζω(d′ − x′).
+#[derive(Clone, Debug)]
+struct Resonance {
+    stiffness: f32,
+    /// 2ζω.
+    damping: f32,
+    /// What is left of the pull, as the acceleration at the end of the tick counts in it.
+    yielding: f32,
+}
+
+impl Resonance {
+    fn new(params: &CarriageParams, tick_hz: f64) -> Option<Self> {
+        let omega = core::f64::consts::TAU * params.resonance_hz / tick_hz;
+        let (stiffness, damping) = (omega * omega, 2.0 * params.resonance_damping * omega);
+        (stiffness > 0.0).then(|| Self {
+            stiffness: stiffness as f32,
+            damping: damping as f32,
+            yielding: (1.0 / (1.0 + 0.5 * damping + 0.25 * stiffness)) as f32,
+        })
     }
 
-    /// The resonance, by the trapezoidal rule: x″ = ω²(d − x) + 2ζω(d′ − x′).
-    fn swing(&mut self, driver: State) {
-        let State {
+    /// One tick, in which the nut gains `gain` of velocity.
+    fn step(&self, swing: Swing, gain: f32) -> Swing {
+        let Swing {
             position,
             velocity,
             acceleration,
-        } = self.state;
-        let quarter = 0.25 * self.stiffness;
-        let reached = position + velocity + 0.25 * acceleration;
-        let speed = velocity + 0.5 * acceleration;
-        let pull = self.stiffness * (driver.position - reached)
-            + 2.0 * self.damping_rate * (driver.velocity - speed);
-        let next = pull / (1.0 + self.damping_rate + quarter);
+        } = swing;
+        // What the carriage loses on the nut before its own acceleration changes.
+        let behind = gain - velocity;
+        let pull = self.stiffness * (behind - position - 0.25 * acceleration)
+            + self.damping * (behind - 0.5 * acceleration);
+        let next = pull * self.yielding;
         let mean = 0.5 * (acceleration + next);
-        self.state = State {
-            position: position + velocity + 0.5 * mean,
-            velocity: velocity + mean,
+        Swing {
+            position: position - behind + 0.5 * mean,
+            velocity: mean - behind,
             acceleration: next,
-        };
+        }
     }
 }

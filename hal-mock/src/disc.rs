@@ -4,9 +4,9 @@ use leadscrew::parameter_table::ParameterTable;
 use leadscrew::units::{RangeError, checked};
 
 use crate::random::Noise;
-use crate::wave::sine;
+use crate::wave::{phase, sine};
 
-/// Most edges a revolution.
+/// Most edges a revolution, a power of two.
 pub const MAX_EDGES: usize = 16_384;
 /// Units of a placement error in a d.
 const UNITS_PER_D: f64 = 4096.0;
@@ -58,8 +58,8 @@ impl Disc {
             let placed = offsets[edge % 4]
                 + line
                 + params.edge_sigma_d * noise.normal()
-                + params.eccentricity_d * sine(turn + first_phase)
-                + params.second_harmonic_d * sine(2.0 * turn + second_phase);
+                + params.eccentricity_d * f64::from(sine(phase(turn + first_phase)))
+                + params.second_harmonic_d * f64::from(sine(phase(2.0 * turn + second_phase)));
             // Edges keep their order, whatever the dice say.
             let kept = if edge > 0 && placed < lowest {
                 lowest
@@ -81,7 +81,8 @@ impl Disc {
     /// Error of edge `edge` (0 ≤ edge < [`Self::edges`]) in Q.32 d.
     #[must_use]
     pub fn error_q32(&self, edge: usize) -> i64 {
-        i64::from(self.errors[edge]) << (32 - 12)
+        // The mask spares the check of the bound.
+        i64::from(self.errors[edge & (MAX_EDGES - 1)]) << (32 - 12)
     }
 }
 

@@ -2,12 +2,20 @@
 //!
 //! v″ + 2ζω·v′ + ω²·v = ω²·(G·u − friction), |v′| limited, integrated by the trapezoidal rule, so that
 //! the motion of a tick is exactly a cubic ([`Arc`]).
+//!
+//! The state of the shaft is f64. What moves it (the gap between aim and velocity, friction, ripple) is
+//! f32, for which the target has hardware: 1e-7 of an acceleration is lost.
+
+mod friction;
+mod response;
 
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::units::{AxisScale, Command, RangeError};
 
+use self::friction::Friction;
+use self::response::Response;
 use crate::arc::{Arc, State};
-use crate::wave::sine;
+use crate::wave::{Phase, phase, sine};
 
 leadscrew::parameter_table! {
     /// The drive of the 16K20F3, longitudinal axis, with its imperfections.
@@ -57,34 +65,35 @@ impl DriveParams {
     }
 }
 
-/// Most ticks of transport delay.
+/// Most ticks of transport delay; a power of two, so that a place that wraps stays in step.
 const MAX_DELAY: usize = 4096;
+/// Finest resolution that an f32 of the command has.
+const FINEST_RESOLUTION: f64 = 1e-7;
 
 /// The drive and the shaft it turns.
 #[derive(Clone, Debug)]
 pub struct Drive {
     full_velocity: f64,
-    stiffness: f64,
-    damping_rate: f64,
+    response: Response,
     max_acceleration: f64,
-    resolution: f64,
-    steps_per_full: f64,
-    offset: f64,
+    offset: f32,
+    /// `None` if the command is not stepped.
+    steps: Option<Steps>,
     dead_ticks: u32,
-    ripple: f64,
-    ripple_turns_per_tick: f64,
-    kinetic: f64,
-    excess: f64,
-    stribeck: f64,
+    ripple_amplitude: f32,
+    ripple_step: Phase,
+    friction: Option<Friction>,
 
     shaft: State,
     line: [f32; MAX_DELAY],
     delay: usize,
     place: usize,
     /// Sign of the last command that was not zero, and what is left of the dead time after its change.
-    sign: f64,
+    sign: i32,
     dead_left: u32,
-    ripple_phase: f64,
+    ripple_phase: Phase,
+    /// Ripple in the tick to come.
+    ripple: f32,
 }
 
 impl Drive {
@@ -95,26 +104,17 @@ impl Drive {
     pub fn new(params: &DriveParams, scale: AxisScale, position: f64) -> Result<Self, RangeError> {
         params.check()?;
         let tick_hz = scale.tick_hz();
-        let omega = core::f64::consts::TAU / (params.natural_period_s * tick_hz);
-        let kinetic = scale.velocity_from_feed(params.friction_mm_per_min)?;
+        let full_velocity = scale.velocity_from_feed(params.full_command_feed_mm_per_min)?;
         Ok(Self {
-            full_velocity: scale.velocity_from_feed(params.full_command_feed_mm_per_min)?,
-            stiffness: omega * omega,
-            damping_rate: params.damping * omega,
+            full_velocity,
+            response: Response::new(params, tick_hz),
             max_acceleration: scale.acceleration_from_m_s2(params.max_acceleration_m_s2),
-            resolution: params.resolution,
-            steps_per_full: if params.resolution > 0.0 {
-                1.0 / params.resolution
-            } else {
-                0.0
-            },
-            offset: params.offset,
+            offset: params.offset as f32,
+            steps: Steps::new(params.resolution, full_velocity),
             dead_ticks: (params.dead_time_s * tick_hz + 0.5) as u32,
-            ripple: params.ripple,
-            ripple_turns_per_tick: params.ripple_hz / tick_hz,
-            kinetic,
-            excess: kinetic * (params.stiction_ratio - 1.0),
-            stribeck: scale.velocity_from_feed(params.stribeck_mm_per_min)?,
+            ripple_amplitude: params.ripple as f32,
+            ripple_step: phase(params.ripple_hz / tick_hz),
+            friction: Friction::new(params, scale)?,
             shaft: State {
                 position,
                 ..State::default()
@@ -122,9 +122,10 @@ impl Drive {
             line: [0.0; MAX_DELAY],
             delay: ((params.delay_s * tick_hz + 0.5) as usize).min(MAX_DELAY - 1),
             place: 0,
-            sign: 0.0,
+            sign: 0,
             dead_left: 0,
-            ripple_phase: 0.0,
+            ripple_phase: 0,
+            ripple: 0.0,
         })
     }
 
@@ -137,11 +138,7 @@ impl Drive {
     /// Instantaneous ripple of the tachogenerator, as a share of the speed.
     #[must_use]
     pub fn ripple(&self) -> f64 {
-        if self.ripple == 0.0 {
-            0.0
-        } else {
-            self.ripple * sine(self.ripple_phase)
-        }
+        f64::from(self.ripple)
     }
 
     /// Moves one tick under `command`; off (`enable` false) the drive brakes to a stop.
@@ -154,72 +151,55 @@ impl Drive {
             self.accelerate(wanted)
         };
         self.shaft = arc.end();
-        self.ripple_phase += self.ripple_turns_per_tick;
-        if self.ripple_phase >= 1.0 {
-            self.ripple_phase -= 1.0;
+        if self.ripple_amplitude != 0.0 {
+            self.ripple_phase = self.ripple_phase.wrapping_add(self.ripple_step);
+            self.ripple = self.ripple_amplitude * sine(self.ripple_phase);
         }
         arc
     }
 
-    fn delayed(&mut self, command: Command) -> f64 {
+    fn delayed(&mut self, command: Command) -> f32 {
         // A command has at most 31 bits, but the drive resolves far fewer than the 24 kept here.
-        self.line[self.place] = command.to_bits() as f32 * (1.0 / 1_073_741_824.0);
-        let due = if self.place >= self.delay {
-            self.place - self.delay
-        } else {
-            self.place + MAX_DELAY - self.delay
-        };
-        self.place = if self.place + 1 == MAX_DELAY {
-            0
-        } else {
-            self.place + 1
-        };
-        f64::from(self.line[due])
+        self.line[self.place % MAX_DELAY] = command.to_bits() as f32 * (1.0 / 1_073_741_824.0);
+        let due = self.place.wrapping_sub(self.delay);
+        self.place = self.place.wrapping_add(1);
+        self.line[due % MAX_DELAY]
     }
 
     /// The velocity that the drive aims at, d/tick.
-    fn answer(&mut self, command: f64) -> f64 {
-        let offset = command + self.offset;
-        let steps = offset * self.steps_per_full;
-        let rounded = (if steps < 0.0 {
-            steps - 0.5
-        } else {
-            steps + 0.5
-        }) as i64 as f64
-            * self.resolution;
-        let answered = if self.steps_per_full > 0.0 {
-            rounded
-        } else {
-            offset
+    fn answer(&mut self, command: f32) -> f64 {
+        let command = command + self.offset;
+        let (sign, answered) = match &self.steps {
+            Some(steps) => {
+                let whole = steps.nearest(command);
+                (whole.signum(), f64::from(whole) * steps.velocity)
+            }
+            None => (sign(command), f64::from(command) * self.full_velocity),
         };
-        if answered * self.sign < 0.0 {
+        if sign * self.sign < 0 {
             self.dead_left = self.dead_ticks;
         }
-        if answered != 0.0 {
-            self.sign = answered;
+        if sign != 0 {
+            self.sign = sign;
         }
         if self.dead_left > 0 {
             self.dead_left -= 1;
             return 0.0;
         }
-        answered * self.full_velocity
-    }
-
-    /// Friction in terms of the velocity that the drive aims at, opposing `direction`.
-    fn friction(&self, direction: f64) -> f64 {
-        if self.kinetic == 0.0 {
-            return 0.0;
-        }
-        let relative = self.shaft.velocity / self.stribeck;
-        let size = self.kinetic + self.excess / (1.0 + relative * relative);
-        if direction < 0.0 { -size } else { size }
+        answered
     }
 
     /// True if static friction holds the shaft, or catches it within this tick.
     fn is_stuck(&self, wanted: f64) -> bool {
-        let held = self.kinetic + self.excess;
-        let next = self.shaft.velocity + self.shaft.acceleration;
-        held > 0.0 && wanted.abs() <= held && next * self.shaft.velocity <= 0.0
+        let State {
+            velocity,
+            acceleration,
+            ..
+        } = self.shaft;
+        self.friction
+            .as_ref()
+            .is_some_and(|friction| (wanted as f32).abs() <= friction.held)
+            && (velocity == 0.0 || (velocity + acceleration) * velocity <= 0.0)
     }
 
     /// Comes to rest within the tick.
@@ -247,23 +227,55 @@ impl Drive {
             acceleration,
             ..
         } = self.shaft;
-        let direction = if velocity == 0.0 { wanted } else { velocity };
-        let target = wanted - self.friction(direction);
-        let seen = velocity * (1.0 + self.ripple());
-        let quarter = 0.25 * self.stiffness;
-        let kept = acceleration * (1.0 - self.damping_rate - quarter);
-        let next = (kept + self.stiffness * (target - seen)) / (1.0 + self.damping_rate + quarter);
-        let limit = self.max_acceleration;
-        let next = if next > limit {
-            limit
-        } else if next < -limit {
-            -limit
-        } else {
-            next
-        };
+        let mut gap = (wanted - velocity) as f32;
+        let speed = velocity as f32;
+        if let Some(friction) = &self.friction {
+            let direction = if velocity == 0.0 { gap } else { speed };
+            gap -= friction.at(speed).copysign(direction);
+        }
+        gap -= speed * self.ripple;
+        let next = self.limited(self.response.next(acceleration as f32, gap));
         Arc {
             start: self.shaft,
             jerk: next - acceleration,
         }
     }
+
+    /// An acceleration within the limit, which is not rounded.
+    fn limited(&self, acceleration: f32) -> f64 {
+        let limit = self.max_acceleration as f32;
+        if acceleration >= limit {
+            self.max_acceleration
+        } else if acceleration <= -limit {
+            -self.max_acceleration
+        } else {
+            f64::from(acceleration)
+        }
+    }
+}
+
+/// The steps of command that the drive answers to.
+#[derive(Clone, Debug)]
+struct Steps {
+    per_full: f32,
+    /// Velocity of a step, d/tick.
+    velocity: f64,
+}
+
+impl Steps {
+    fn new(resolution: f64, full_velocity: f64) -> Option<Self> {
+        (resolution >= FINEST_RESOLUTION).then(|| Self {
+            per_full: (1.0 / resolution) as f32,
+            velocity: resolution * full_velocity,
+        })
+    }
+
+    fn nearest(&self, command: f32) -> i32 {
+        let steps = command * self.per_full;
+        (steps + 0.5_f32.copysign(steps)) as i32
+    }
+}
+
+fn sign(value: f32) -> i32 {
+    i32::from(value > 0.0) - i32::from(value < 0.0)
 }

@@ -107,14 +107,15 @@ impl Machine {
     /// Moves through one tick under the command that was put out before it.
     pub fn step(&mut self, command: Command, enable: bool) {
         let ripple = self.drive.ripple();
-        let shaft = self.drive.step(command, enable);
-        self.carriage.step(shaft.end());
-        self.turned = (shaft, ripple);
+        let turned = self.drive.step(command, enable);
+        let shaft = self.drive.shaft();
+        self.carriage.step(shaft);
+        self.turned = (turned, ripple);
         self.seen = match &mut self.coupling {
-            Coupling::Rigid => shaft,
+            Coupling::Rigid => turned,
             Coupling::Play(play, end) => {
-                let (position, driven) = play.follow(shaft.end().position);
-                let velocity = if driven { shaft.end().velocity } else { 0.0 };
+                let (position, driven) = play.follow(shaft.position);
+                let velocity = if driven { shaft.velocity } else { 0.0 };
                 let way = position - end.0;
                 // The ends of the play are taken up by impact, within the tick.
                 end.1 = without_overshoot(end.1, way);

@@ -19,6 +19,10 @@ impl Play {
 
     /// Where the follower is when the leader has come to `leader`; true if the leader drives it.
     pub fn follow(&mut self, leader: f64) -> (f64, bool) {
+        if self.half_width == 0.0 {
+            self.follower = leader;
+            return (leader, true);
+        }
         let lowest = leader - self.half_width;
         let highest = leader + self.half_width;
         let driven = self.follower <= lowest || self.follower >= highest;

@@ -7,6 +7,8 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 #[derive(Clone, Debug)]
 pub struct Noise(Xoshiro128PlusPlus);
 
+/// No [`Noise::bell`] is larger.
+pub const LARGEST_BELL: i64 = 510;
 /// σ of the sum of four uniform bytes: √(4·(2¹⁶ − 1)/12).
 const BYTES_SIGMA: f64 = 147.800_54;
 

@@ -1,20 +1,23 @@
 //! The digest of a run: one number that is equal only if every input and output of every tick was.
 
-use crc::{CRC_64_XZ, Crc, Digest, Table};
 use leadscrew::axis::{Inputs, Outputs};
 use leadscrew::hal::Latch;
 use leadscrew::telemetry::Record;
 
-/// One table is enough: a slice-by-sixteen one would be 32 KB.
-static CRC: Crc<u64, Table<1>> = Crc::<u64, Table<1>>::new(&CRC_64_XZ);
+/// Odd, and without pattern in its bits: Knuth's multiplier for congruential generators.
+const MULTIPLIER: u64 = 6_364_136_223_846_793_005;
 
-/// A running CRC-64 over fixed-width inputs and outputs.
-#[derive(Clone)]
-pub struct TraceDigest(Digest<'static, u64, Table<1>>);
+/// A running hash over fixed-width inputs and outputs, word by word.
+///
+/// A step maps both states and words one to one: runs that differ in a single word have different digests
+/// for certain, others have equal ones with a chance of 2⁻⁶⁴.
+#[derive(Clone, Debug)]
+pub struct TraceDigest(u64);
 
 impl Default for TraceDigest {
     fn default() -> Self {
-        Self(CRC.digest())
+        // Not zero, so that leading zeros count.
+        Self(MULTIPLIER)
     }
 }
 
@@ -32,8 +35,8 @@ impl TraceDigest {
         self.word(capture.sampled_at);
         self.option(capture.last_edge_at);
         self.word(capture.edges.iter().map(|part| part.len() as u32).sum());
-        for &time in capture.edges.into_iter().flatten() {
-            self.word(time);
+        for part in capture.edges {
+            part.iter().for_each(|&time| self.word(time));
         }
         self.word(
             u32::from(capture.illegal)
@@ -44,21 +47,106 @@ impl TraceDigest {
             self.option(latch.map(|Latch { count, .. }| count));
             self.option(latch.map(|Latch { time, .. }| time));
         }
-        self.0.update(&Record::new(outputs).to_bytes());
+        let record = Record::new(outputs).to_bytes();
+        for &word in record.as_chunks().0 {
+            self.word(u32::from_le_bytes(word));
+        }
     }
 
     /// The digest so far.
     #[must_use]
-    pub fn value(&self) -> u64 {
-        self.0.clone().finalize()
+    pub const fn value(&self) -> u64 {
+        self.0
     }
 
     fn word(&mut self, word: u32) {
-        self.0.update(&word.to_le_bytes());
+        // Turned round, so that the high half, which depends on most, meets the next word.
+        self.0 = (self.0 ^ u64::from(word))
+            .wrapping_mul(MULTIPLIER)
+            .rotate_left(32);
     }
 
     fn option(&mut self, word: Option<u32>) {
         self.word(u32::from(word.is_some()));
         self.word(word.unwrap_or(0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use leadscrew::hal::Capture;
+
+    use super::*;
+
+    fn digest(capture: Capture<'_>, outputs: &Outputs) -> u64 {
+        let mut digest = TraceDigest::new();
+        let enable = true;
+        digest.update(&Inputs { capture, enable }, outputs);
+        digest.update(&Inputs { capture, enable }, &Outputs::default());
+        digest.value()
+    }
+
+    #[test]
+    fn every_bit_of_every_edge_time_counts() {
+        let times = [7, 0xffff_0000, 3, 0, 0];
+        let of = |times: &[u32; 5], split| {
+            let (older, newer) = times.split_at(split);
+            let edges = [older, newer];
+            let capture = Capture {
+                edges,
+                ..Capture::default()
+            };
+            digest(capture, &Outputs::default())
+        };
+        for place in 0..times.len() {
+            for bit in 0..32 {
+                let mut other = times;
+                other[place] ^= 1 << bit;
+                assert_ne!(of(&times, 2), of(&other, 2), "bit {bit} of {place}");
+            }
+        }
+        assert_eq!(
+            of(&times, 2),
+            of(&times, 5),
+            "where the ring wraps does not matter"
+        );
+    }
+
+    #[test]
+    fn what_is_not_there_differs_from_zero() {
+        let none = Capture::default();
+        let latch = Some(Latch { count: 0, time: 0 });
+        let others = [
+            Capture {
+                last_edge_at: Some(0),
+                ..none
+            },
+            Capture {
+                edges: [&[0], &[]],
+                ..none
+            },
+            Capture {
+                index: latch,
+                ..none
+            },
+            Capture {
+                probe: latch,
+                ..none
+            },
+            Capture {
+                overrun: true,
+                ..none
+            },
+            Capture { illegal: 1, ..none },
+        ];
+        let of_none = digest(none, &Outputs::default());
+        for other in others {
+            assert_ne!(digest(other, &Outputs::default()), of_none, "{other:?}");
+        }
+        let outputs = Outputs {
+            moving: true,
+            ..Outputs::default()
+        };
+        assert_ne!(digest(none, &outputs), of_none);
     }
 }

@@ -24,7 +24,6 @@ struct Table {
     steps: [Samples; 4],
     record: Samples,
     queue: Samples,
-    machine: Samples,
 }
 
 /// The way out of the tick, as the firmware has it.
@@ -40,7 +39,6 @@ static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Table {
     ],
     record: Samples::of("record"),
     queue: Samples::of("queue"),
-    machine: Samples::of("machine"),
 });
 
 /// The standard move on the reference machine with that estimator.
@@ -81,7 +79,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
                 let _ = axis.queue(&next.profile, next.start);
             }
         }
-        let moved = counter.count(|| machine.step(applied.command, applied.enabled));
+        machine.step(applied.command, applied.enabled);
         let capture = machine.capture();
         let inputs = Inputs {
             capture,
@@ -104,7 +102,6 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
         if applied.moving {
             table.record.push(record);
             table.queue.push(queued.saturating_sub(record));
-            table.machine.push(moved);
             for (samples, count) in table.steps.iter_mut().zip(steps) {
                 samples.push(count);
             }
@@ -117,6 +114,5 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
         .steps
         .iter_mut()
         .for_each(|samples| samples.log("step"));
-    table.machine.log("simulator");
     Ok(())
 }
