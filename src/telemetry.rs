@@ -1,6 +1,10 @@
 //! What leaves the tick: one fixed-width record of every stage, raw.
 
 use crate::axis::Outputs;
+use crate::units::Command;
+
+/// Bit of [`Record::flags`]: the axis is enabled.
+const ENABLED: u32 = 1;
 
 /// One tick, in the bits of the formats in [`crate::units`]; 52 bytes on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,6 +59,12 @@ impl Record {
             command: outputs.command.to_bits(),
             flags,
         }
+    }
+
+    /// What the drive was to do in this tick: the command, and whether it was enabled.
+    #[must_use]
+    pub const fn drive(&self) -> (Command, bool) {
+        (Command::from_bits(self.command), self.flags & ENABLED != 0)
     }
 
     /// The record as little-endian bytes, fields in order.

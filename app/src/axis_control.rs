@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::Consumer;
-use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::axis::{Axis, Inputs};
 use leadscrew::hal::Encoder;
 use leadscrew::setpoint::profile::Profile;
 use leadscrew::telemetry::Record;
@@ -69,20 +69,18 @@ impl<E> AxisControl<E> {
 
 impl<E: Encoder> Control for AxisControl<E> {
     type Inputs = E;
-    type Outputs = Outputs;
     type Record = Record;
 
-    fn step(&mut self, encoder: &E) -> (Outputs, Record) {
+    fn step(&mut self, encoder: &E) -> Record {
         self.take_request();
         let inputs = Inputs {
             capture: encoder.capture(),
             enable: self.enable,
         };
-        let outputs = self.axis.step(&inputs);
-        (*outputs, Record::new(outputs))
+        Record::new(self.axis.step(&inputs))
     }
 
-    fn missed(&mut self) -> (Outputs, Record) {
-        (Outputs::default(), Record::default())
+    fn missed(&mut self) -> Record {
+        Record::default()
     }
 }

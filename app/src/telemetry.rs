@@ -75,15 +75,14 @@ mod tests {
 
     impl Control for Echo {
         type Inputs = u32;
-        type Outputs = ();
         type Record = u32;
 
-        fn step(&mut self, inputs: &u32) -> ((), u32) {
-            ((), *inputs)
+        fn step(&mut self, inputs: &u32) -> u32 {
+            *inputs
         }
 
-        fn missed(&mut self) -> ((), u32) {
-            ((), 0)
+        fn missed(&mut self) -> u32 {
+            0
         }
     }
 

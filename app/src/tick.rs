@@ -8,16 +8,14 @@ use heapless::spsc::Producer;
 pub trait Control {
     /// What the board saw up to this tick.
     type Inputs;
-    /// What the board is to do until the next tick.
-    type Outputs;
-    /// What is reported of the tick.
-    type Record;
+    /// What the tick gives: to the board what it is to do until the next tick, to telemetry a record.
+    type Record: Copy;
 
     /// One tick; bounded time, no blocking.
-    fn step(&mut self, inputs: &Self::Inputs) -> (Self::Outputs, Self::Record);
+    fn step(&mut self, inputs: &Self::Inputs) -> Self::Record;
 
-    /// A tick without inputs: the safe outputs.
-    fn missed(&mut self) -> (Self::Outputs, Self::Record);
+    /// A tick without inputs: safe for the board.
+    fn missed(&mut self) -> Self::Record;
 }
 
 /// The timer whose interrupt is the tick.
@@ -129,9 +127,9 @@ impl<C: Control> Runtime<C> {
     }
 
     /// One tick. `inputs` is `None` where they did not come in time: counted as late.
-    pub fn run(&mut self, timer: &impl TickTimer, inputs: Option<&C::Inputs>) -> C::Outputs {
+    pub fn run(&mut self, timer: &impl TickTimer, inputs: Option<&C::Inputs>) -> C::Record {
         keep_worst(&self.counters.worst_start, timer.since_due());
-        let (outputs, record) = if let Some(inputs) = inputs {
+        let record = if let Some(inputs) = inputs {
             self.control.step(inputs)
         } else {
             add_one(&self.counters.late);
@@ -143,7 +141,7 @@ impl<C: Control> Runtime<C> {
         self.check_end(timer);
         // Last: a reader that sees tick n counted sees all that was counted in it.
         add_one(&self.counters.ticks);
-        outputs
+        record
     }
 
     fn check_end(&self, timer: &impl TickTimer) {
@@ -170,15 +168,14 @@ mod tests {
 
     impl Control for Doubler {
         type Inputs = u32;
-        type Outputs = u32;
         type Record = u32;
 
-        fn step(&mut self, inputs: &u32) -> (u32, u32) {
-            (inputs * 2, *inputs)
+        fn step(&mut self, inputs: &u32) -> u32 {
+            inputs * 2
         }
 
-        fn missed(&mut self) -> (u32, u32) {
-            (0, u32::MAX)
+        fn missed(&mut self) -> u32 {
+            u32::MAX
         }
     }
 
@@ -225,7 +222,7 @@ mod tests {
     fn a_tick_in_time_is_clean_and_recorded() {
         let (mut runtime, mut records, counters) = runtime();
         assert_eq!(runtime.run(&Timer::ending_at(50), Some(&21)), 42);
-        assert_eq!(records.dequeue(), Some(21));
+        assert_eq!(records.dequeue(), Some(42));
         let counts = counters.read();
         assert!(counts.is_clean());
         assert_eq!(
@@ -237,7 +234,7 @@ mod tests {
     #[test]
     fn missing_inputs_give_safe_outputs_and_count_as_late() {
         let (mut runtime, mut records, counters) = runtime();
-        assert_eq!(runtime.run(&Timer::ending_at(5), None), 0);
+        assert_eq!(runtime.run(&Timer::ending_at(5), None), u32::MAX);
         assert_eq!(records.dequeue(), Some(u32::MAX));
         assert_eq!(counters.read().late, 1);
         assert!(!counters.read().is_clean());

@@ -9,6 +9,7 @@ use leadscrew::hal::Encoder;
 use leadscrew::params::{AxisConfig, AxisParams, MotionParams, OutputParams, ParamError};
 use leadscrew::setpoint::profile::{PlanError, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::telemetry::Record;
 use leadscrew::units::{Position, checked};
 
 use crate::machine::{Machine, MachineParams};
@@ -214,7 +215,7 @@ impl Simulation {
             enable: true,
         };
         self.outputs = *self.axis.step(&inputs);
-        self.digest.update(&inputs, &self.outputs);
+        self.digest.update(&inputs, &Record::new(&self.outputs));
         self.tick += 1;
         self.queue_next_move()?;
         Ok(Some(self.outputs))

@@ -1,9 +1,10 @@
 //! The machine in the guest: what its interrupt does, and what the run is made of.
 
 use board_mps2_an386::handoff::{Giver, Taker};
-use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::axis::{Axis, Inputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder;
+use leadscrew::telemetry::Record;
 use leadscrew_app::options::Options;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
 use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
@@ -42,19 +43,19 @@ impl Scenario {
 /// The machine interrupt's state.
 pub struct MachineState {
     inputs: Giver<Machine>,
-    outputs: Taker<Outputs>,
+    records: Taker<Record>,
     /// What the tick put out last; before the first tick nothing.
-    applied: Outputs,
+    applied: Record,
     digest: TraceDigest,
 }
 
 impl MachineState {
     /// The state before the first step; the machine is in the handoff to the tick.
-    pub fn new(inputs: Giver<Machine>, outputs: Taker<Outputs>) -> Self {
+    pub fn new(inputs: Giver<Machine>, records: Taker<Record>) -> Self {
         Self {
             inputs,
-            outputs,
-            applied: Outputs::default(),
+            records,
+            applied: Record::default(),
             digest: TraceDigest::new(),
         }
     }
@@ -64,29 +65,27 @@ impl MachineState {
         self.digest.value()
     }
 
-    /// Moves the machine under the outputs of the last tick.
+    /// Moves the machine as the last tick wants it.
     pub fn step(&mut self) {
         self.account();
-        let Outputs {
-            command, enabled, ..
-        } = self.applied;
+        let (command, enabled) = self.applied.drive();
         // Not taken: the tick did not run, and the next one finds these inputs again as one too few.
         let _ = self.inputs.give(|machine| machine.step(command, enabled));
     }
 
     /// Takes the last tick into the digest, while the machine still shows what that tick saw.
     pub fn account(&mut self) {
-        let Some(outputs) = self.outputs.take(|outputs| *outputs) else {
+        let Some(record) = self.records.take(|record| *record) else {
             return;
         };
-        self.applied = outputs;
+        self.applied = record;
         let digest = &mut self.digest;
         let _ = self.inputs.look(|machine| {
             let inputs = Inputs {
                 capture: machine.capture(),
-                enable: outputs.enabled,
+                enable: record.drive().1,
             };
-            digest.update(&inputs, &outputs);
+            digest.update(&inputs, &record);
         });
     }
 }

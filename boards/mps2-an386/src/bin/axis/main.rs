@@ -32,7 +32,6 @@ use board_mps2_an386::{CLOCK_HZ, arguments, exit_failure, time_driver};
 use cortex_m::peripheral::NVIC;
 use embassy_executor::Spawner;
 use heapless::spsc::{Consumer, Producer, Queue};
-use leadscrew::axis::Outputs;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::{AxisControl, Request};
 use leadscrew_app::options::Options;
@@ -67,7 +66,7 @@ static REFUSED: AtomicU32 = AtomicU32::new(0);
 struct TickState {
     runtime: Runtime<AxisControl<Machine>>,
     inputs: Taker<Machine>,
-    outputs: Giver<Outputs>,
+    outputs: Giver<Record>,
     ticks_left: u32,
 }
 
@@ -101,12 +100,12 @@ fn TIMER1() {
         }
         let runtime = &mut state.runtime;
         let clock = TickClock(&TIMER1);
-        let outputs = state
+        let record = state
             .inputs
             .take(|inputs| runtime.run(&clock, Some(inputs)))
             .unwrap_or_else(|| runtime.run(&clock, None));
         // Not taken: the machine did not run; it has no inputs for the next tick either, which counts.
-        let _ = state.outputs.give(|place| *place = outputs);
+        let _ = state.outputs.give(|place| *place = record);
         state.ticks_left -= 1;
         if state.ticks_left == 0 {
             TIMER0.stop();
@@ -170,13 +169,13 @@ fn wire(
     ticks: u32,
 ) -> (Producer<'static, Request>, Consumer<'static, Record>) {
     static INPUTS: StaticCell<Handoff<Machine>> = StaticCell::new();
-    static OUTPUTS: StaticCell<Handoff<Outputs>> = StaticCell::new();
+    static OUTPUTS: StaticCell<Handoff<Record>> = StaticCell::new();
     static RECORDS: StaticCell<Queue<Record, QUEUE>> = StaticCell::new();
     static REQUESTS: ConstStaticCell<Queue<Request, REQUEST_QUEUE>> =
         ConstStaticCell::new(Queue::new());
 
     let (to_tick, from_machine) = INPUTS.init(Handoff::new(scenario.machine)).split();
-    let (to_machine, from_tick) = OUTPUTS.init(Handoff::new(Outputs::default())).split();
+    let (to_machine, from_tick) = OUTPUTS.init(Handoff::new(Record::default())).split();
     let (producer, consumer) = RECORDS.init(Queue::new()).split();
     let (ask, asked) = REQUESTS.take().split();
     let control = AxisControl::new(scenario.axis, asked, &REFUSED);

@@ -4,6 +4,7 @@ use board_mps2_an386::instructions::Counter;
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder as _;
+use leadscrew::telemetry::Record;
 use leadscrew::units::{AxisScale, Command};
 use leadscrew_hal_mock::arc::{Arc, State};
 use leadscrew_hal_mock::carriage::Carriage;
@@ -102,7 +103,8 @@ fn there_and_back(
             enable: true,
         };
         applied = *axis.step(&inputs);
-        let hashed = counter.count(|| digest.update(&inputs, &applied));
+        let record = Record::new(&applied);
+        let hashed = counter.count(|| digest.update(&inputs, &record));
         if applied.moving {
             moving.push(step);
             digests.push(hashed);
