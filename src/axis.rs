@@ -128,10 +128,11 @@ impl Axis {
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts anew from the next sample.
+    /// estimator starts as after a long motion at the velocity estimated last.
     pub fn reconfigure(&mut self, config: AxisConfig) {
         if config.estimator != self.config.estimator {
             self.estimator = Estimator::new(config.estimator);
+            self.estimator.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());

@@ -165,7 +165,7 @@ impl Unwrapper {
         } = *observation.capture;
         let moved = observation.delta;
         observation.delta = moved.clamp(-MAX_DELTA, MAX_DELTA);
-        observation.edges_complete &= !overrun;
+        observation.edges_complete &= !overrun && illegal == 0;
 
         let health = &mut self.health;
         let overspeed = observation.delta != moved;

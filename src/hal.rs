@@ -3,8 +3,6 @@
 //! The same shapes are filled by timer hardware, by the software decode of a recording and by the
 //! simulator; the core cannot tell them apart.
 
-use crate::units::Command;
-
 /// What the encoder inputs saw up to one sampling instant.
 ///
 /// All times are values of one free-running 32-bit timer that wraps; all counts are values of one
@@ -47,10 +45,4 @@ pub struct Latch {
 pub trait Encoder {
     /// The capture of the newest sampling instant.
     fn capture(&self) -> Capture<'_>;
-}
-
-/// The drive behind the ±10 V converter and its enable line.
-pub trait Drive {
-    /// Sets the command; `enable` false means 0 V with the enable line off, whatever the command.
-    fn command(&mut self, command: Command, enable: bool);
 }

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::controller::config::Gains;
-use crate::estimator::{EstimatorConfig, Lags};
+use crate::estimator::{Delay, EstimatorConfig};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
@@ -18,7 +18,7 @@ pub const MAX_FEED_SHARE: f64 = 0.95;
 pub struct AxisParams {
     /// Control rate, Hz: 100 to 40 000.
     pub tick_hz: f64,
-    /// Clock of the edge timer, Hz: 1e6 to 250e6.
+    /// Clock of the edge timer, Hz: 1e6 to 250e6. Checked here; the estimators so far use counts alone.
     pub timer_hz: f64,
     /// What the axis is and how it may move.
     pub motion: MotionParams,
@@ -125,7 +125,8 @@ impl fmt::Display for ParamError {
 
 impl core::error::Error for ParamError {}
 
-/// The quantised configuration of an axis; made only by validation.
+/// The quantised configuration of an axis, as validation makes it: the controller's weights count on
+/// the lags of the estimator beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
     /// Estimator.
@@ -154,7 +155,7 @@ impl AxisParams {
             limits: self.motion.limits(scale)?,
             controller: self
                 .controller
-                .quantise(scale, full_velocity, &self.estimator.lags())?,
+                .quantise(scale, full_velocity, self.estimator.delay())?,
             output: self.output.quantise(scale)?,
         })
     }
@@ -183,12 +184,12 @@ impl MotionParams {
 }
 
 impl ControllerParams {
-    /// Gains per d and tick; `full_velocity` is the speed at full command, d/tick, `lags` are the estimator's.
+    /// Gains per d and tick; `full_velocity` is the speed at full command, d/tick, `delay` is the estimator's.
     fn quantise(
         &self,
         scale: AxisScale,
         full_velocity: f64,
-        lags: &Lags,
+        delay: Delay,
     ) -> Result<controller::Config, ParamError> {
         self.check()?;
         let rate = scale.tick_hz();
@@ -206,7 +207,7 @@ impl ControllerParams {
         let transfer_ticks = (self.transfer_time_s * rate).max(1.0);
         Ok(controller::Config::new(
             &gains,
-            lags,
+            delay,
             deadband_d,
             self.bias,
             transfer_ticks,

@@ -31,8 +31,8 @@ pub type Lag = I16F16;
 /// Drive command in fractions of full command: ±1 is ±10 V.
 pub type Command = I2F30;
 
-/// Standard gravity, m/s², by which an overload `n` is counted. The paper computes with 9.81.
-pub const STANDARD_GRAVITY_M_S2: f64 = 9.81;
+/// Gravity by which an overload `n` is counted, m/s²: what the paper computes with.
+pub const PAPER_GRAVITY_M_S2: f64 = 9.81;
 
 /// A quantity outside the range in which a conversion makes sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +93,8 @@ const ROTATION_RPM: (f64, f64) = (1e-3, 1e6);
 const LINES: (f64, f64) = (1.0, 1e7);
 const TRAVEL_MM: (f64, f64) = (1e-6, 1e4);
 
-/// Conversions between the units of the shop floor and those of the tick, for one axis.
+/// Conversions between the units of the shop floor and those of the tick, for one axis. Feeds and overloads,
+/// which people type, are checked; the others scale a value that the caller has checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisScale {
     counts_per_mm: f64,
@@ -155,7 +156,7 @@ impl AxisScale {
     /// [`RangeError`] for an overload beyond ±1 000 g.
     pub fn acceleration_from_overload(self, overload_g: f64) -> Result<f64, RangeError> {
         let overload = checked("overload_g", overload_g, OVERLOAD_G.0, OVERLOAD_G.1)?;
-        Ok(self.acceleration_from_m_s2(overload * STANDARD_GRAVITY_M_S2))
+        Ok(self.acceleration_from_m_s2(overload * PAPER_GRAVITY_M_S2))
     }
 
     /// Overload in g of an acceleration in d/tick² (P1, formula 4 turned round).
@@ -163,7 +164,7 @@ impl AxisScale {
     pub fn overload_from_acceleration(self, acceleration_d_per_tick2: f64) -> f64 {
         let m_s2 =
             acceleration_d_per_tick2 * self.tick_hz * self.tick_hz / (1000.0 * self.counts_per_mm);
-        m_s2 / STANDARD_GRAVITY_M_S2
+        m_s2 / PAPER_GRAVITY_M_S2
     }
 
     /// Acceleration in d/tick² of one in m/s².

@@ -114,7 +114,7 @@ proptest! {
             }
 
             let explained = edges == leg.moved.unsigned_abs() as usize;
-            prop_assert_eq!(seen.edges_complete, explained && !leg.overrun);
+            prop_assert_eq!(seen.edges_complete, explained && !leg.overrun && leg.illegal == 0);
             illegal += u32::from(leg.illegal);
             overruns += u32::from(leg.overrun);
             ambiguous += u32::from(edges > 0 && !explained);

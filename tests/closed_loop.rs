@@ -97,9 +97,9 @@ fn the_full_machine_arrives_and_stays_within_its_friction() {
             1,
         );
         assert_sound(&run);
-        // Untuned for offset, delay, dead time and friction: a twentieth of a revolution at most.
+        // Untuned for offset, delay, dead time and friction, so far from the bare machine's dozen.
         let peak = run.following_error_peak();
-        assert!(peak < 500.0, "{tick_hz} Hz: {peak} d");
+        assert!((100.0..200.0).contains(&peak), "{tick_hz} Hz: {peak} d");
         assert!(
             run.last().outputs.count.abs() <= 60,
             "{tick_hz} Hz: {}",
@@ -113,7 +113,7 @@ fn reported_encoder_and_true_position_agree_to_what_lies_between_them() {
     let run = run(
         &MachineParams::z_16k20f3(),
         &MoveAndBack::standard(1000.0),
-        "exponential",
+        "simple",
         1,
     );
     // Encoder against shaft: the errors of the disc (1.5 + 0.3 d and the lines) and half a discrete.
@@ -122,15 +122,18 @@ fn reported_encoder_and_true_position_agree_to_what_lies_between_them() {
         (1.5..3.5).contains(&encoder),
         "encoder is off by {encoder} d"
     );
-    // Reported against encoder: the lag of the position, at 150 d/tick.
+    // Reported against encoder, predicted over the lag of the position by the estimated velocity. The
+    // simple average leaves 7 · 7.5 ticks² less half of the mean square age of its samples, 67.7 ticks²: 18.7
+    // ticks² at 0.9 d/tick² and more where the drive overshoots it, and some noise of the velocity.
     let reported = run.peak(|tick| {
         let estimate = &tick.outputs.estimate;
-        let now = estimate.position.to_num::<f64>()
-            + estimate.velocity.to_num::<f64>() * estimate.lags.position.to_num::<f64>();
-        now - tick.outputs.count as f64 - 0.5
+        let ahead = estimate.velocity.to_num::<f64>() * estimate.lags.position.to_num::<f64>();
+        estimate.position.to_num::<f64>() + ahead - tick.outputs.count as f64 - 0.5
     });
-    // A quadratic motion adds a·lag·(lag + 1)/2·…: 0.9 d/tick² over 5 ticks.
-    assert!(reported < 30.0, "reported is off by {reported} d");
+    assert!(
+        (15.0..21.0).contains(&reported),
+        "reported is off by {reported} d"
+    );
     // Carriage against shaft: 8 d of screw error over 300 mm, 2 d a revolution, and compliance.
     let carriage = run.peak(|tick| tick.truth.carriage.position - tick.truth.shaft.position);
     assert!(
@@ -177,4 +180,43 @@ fn a_wrong_machine_is_seen_in_the_following_error() {
         peak > 5.0 * nominal && peak < 1000.0,
         "{peak} d against {nominal} d"
     );
+}
+
+#[test]
+fn another_estimator_in_full_motion_does_not_kick() {
+    let scenario = MoveAndBack::standard(1000.0);
+    let machine = bare();
+    let config = |name: &str| {
+        let estimator = EstimatorConfig::by_name(name).unwrap().unwrap();
+        scenario
+            .axis_params(&machine, estimator)
+            .unwrap()
+            .validate()
+            .unwrap()
+    };
+    let first = EstimatorConfig::by_name("exponential").unwrap().unwrap();
+    let mut simulation = Simulation::prepare(&scenario, &machine, first, 1).unwrap();
+    let mut commands = Vec::new();
+    while let Some(outputs) = simulation.step().unwrap() {
+        commands.push(outputs.command.to_num::<f64>());
+        // At 150 d/tick, and again while accelerating back.
+        match outputs.tick {
+            1200 => simulation.axis.reconfigure(config("simple")),
+            2900 => simulation.axis.reconfigure(config("gaussian")),
+            _ => {}
+        }
+    }
+    let steps = |ticks: std::ops::Range<usize>| {
+        let pairs = commands[ticks].windows(2);
+        pairs
+            .map(|pair| (pair[1] - pair[0]).abs())
+            .fold(0.0, f64::max)
+    };
+    for change in [1200, 2900] {
+        let (before, after) = (steps(change - 100..change), steps(change..change + 100));
+        assert!(
+            after <= 2.0 * before,
+            "tick {change}: steps of {after} after steps of {before}"
+        );
+    }
 }

@@ -80,7 +80,74 @@ impl<E: Encoder> Control for AxisControl<E> {
         Record::new(self.axis.step(&inputs))
     }
 
+    /// Off, and off it stays until thread mode enables it anew: the axis does not know where it has got to.
     fn missed(&mut self) -> Record {
+        self.enable = false;
         Record::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::boxed::Box;
+
+    use heapless::spsc::Queue;
+    use leadscrew::controller::tuning::DriveModel;
+    use leadscrew::estimator::EstimatorConfig;
+    use leadscrew::hal::Capture;
+    use leadscrew::params::{AxisParams, MotionParams, OutputParams};
+
+    use super::*;
+
+    /// An encoder that stands at a count.
+    struct Standing(u32);
+
+    impl Encoder for Standing {
+        fn capture(&self) -> Capture<'_> {
+            Capture {
+                count: self.0,
+                ..Capture::default()
+            }
+        }
+    }
+
+    fn axis() -> Axis {
+        let drive = DriveModel {
+            natural_period_s: 0.09,
+            damping: 0.5,
+        };
+        let params = AxisParams {
+            tick_hz: 1000.0,
+            timer_hz: 84e6,
+            motion: MotionParams::default(),
+            estimator: EstimatorConfig::by_name("simple").unwrap().unwrap(),
+            controller: drive.place_poles(35.0).unwrap(),
+            output: OutputParams::default(),
+        };
+        Axis::new(params.validate().unwrap())
+    }
+
+    #[test]
+    fn after_a_missed_tick_the_axis_is_off_until_it_is_enabled_anew() {
+        static REFUSED: AtomicU32 = AtomicU32::new(0);
+        let queue: &'static mut Queue<Request, 4> = Box::leak(Box::new(Queue::new()));
+        let (mut ask, asked) = queue.split();
+        let mut control = AxisControl::new(axis(), asked, &REFUSED);
+        assert!(ask.enqueue(Request::Enable(true)).is_ok());
+        control.step(&Standing(0));
+        // Pushed away: the loop works against it.
+        let working = (0..100).map(|_| control.step(&Standing(500))).last();
+        assert!(working.is_some_and(|record| record.command < 0 && record.drive().1));
+
+        assert_eq!(control.missed().drive().0.to_bits(), 0);
+        for _ in 0..3 {
+            let (command, enabled) = control.step(&Standing(500)).drive();
+            assert_eq!((command.to_bits(), enabled), (0, false));
+        }
+        assert!(ask.enqueue(Request::Enable(true)).is_ok());
+        let (command, enabled) = control.step(&Standing(500)).drive();
+        assert_eq!((command.to_bits(), enabled), (0, true), "no kick");
     }
 }

@@ -34,7 +34,7 @@ leadscrew::parameter_table! {
         offset: -0.005, "of full command", -0.5..=0.5;
         /// Transport delay, rounded to whole ticks
         delay_s: 0.002, "s", 0.0..=0.1;
-        /// Time without current at each reversal of the command
+        /// Time for which a reversal of the command is answered by standstill
         dead_time_s: 0.005, "s", 0.0..=1.0;
         /// Amplitude of the tachogenerator's ripple
         ripple: 0.001, "of the speed", 0.0..=0.2;
@@ -129,7 +129,7 @@ impl Drive {
         })
     }
 
-    /// State of the shaft at the end of the last tick.
+    /// State of the shaft at the end of the last tick; held by static friction, it has no acceleration.
     #[must_use]
     pub const fn shaft(&self) -> State {
         self.shaft
@@ -146,11 +146,18 @@ impl Drive {
         let delayed = self.delayed(command);
         let wanted = if enable { self.answer(delayed) } else { 0.0 };
         let arc = if self.is_stuck(wanted) {
-            self.rest()
+            let arc = self.rest();
+            // What stopped the shaft ends with its motion: the next start is from rest.
+            self.shaft = State {
+                position: arc.end().position,
+                ..State::default()
+            };
+            arc
         } else {
-            self.accelerate(wanted)
+            let arc = self.accelerate(wanted);
+            self.shaft = arc.end();
+            arc
         };
-        self.shaft = arc.end();
         if self.ripple_amplitude != 0.0 {
             self.ripple_phase = self.ripple_phase.wrapping_add(self.ripple_step);
             self.ripple = self.ripple_amplitude * sine(self.ripple_phase);

@@ -33,6 +33,8 @@ pub struct Encoder {
     timer: EdgeTimer,
     ring: Ring,
     index: Option<Latch>,
+    /// An index after the sampling instant: the next capture's.
+    next_index: Option<Latch>,
     jitter: Noise,
     /// Scale of the jitter in clocks, Q.32.
     jitter_scale: i64,
@@ -67,6 +69,7 @@ impl Encoder {
             timer: EdgeTimer::new(params.timer_hz, tick_hz, params.noise_s, noise(4)),
             ring: Ring::new(),
             index: None,
+            next_index: None,
             jitter: noise(3),
             jitter_scale,
             sampling_advance: (jitter_scale * LARGEST_BELL) as f64
@@ -87,7 +90,10 @@ impl Encoder {
     /// Moves the shaft through one tick and samples at its end.
     pub fn advance(&mut self, arc: &Arc) {
         self.ring.release();
-        self.index = None;
+        self.sampled_at = self.sampling_instant();
+        self.index = self
+            .next_index
+            .take_if(|latch| is_reached(latch.time, self.sampled_at));
         let track = Track::new(arc);
         if !self.head.is_clear_of(&track) {
             if track.keeps_going() {
@@ -97,7 +103,9 @@ impl Encoder {
             }
         }
         self.timer.end_tick();
-        self.sample();
+        // Edges after a jittered instant wait for the next tick.
+        let waiting = self.ring.take(self.sampled_at);
+        self.sampled_count = self.head.count().wrapping_sub(waiting);
     }
 
     /// What the hardware saw up to the last sampling instant.
@@ -168,24 +176,33 @@ impl Encoder {
     fn record(&mut self, time: i32, direction: Direction, at_index: bool) {
         let time = self.timer.stamp(time);
         if at_index {
-            self.index = Some(Latch {
+            let latch = Some(Latch {
                 count: self.head.count().cast_unsigned(),
                 time,
             });
+            // With its edge: what a capture has not seen it must not tell.
+            if is_reached(time, self.sampled_at) {
+                self.index = latch;
+            } else {
+                self.next_index = latch;
+            }
         }
         self.ring.push(time, direction);
     }
 
-    /// Samples count and time; edges after a jittered instant wait for the next tick.
-    fn sample(&mut self) {
+    /// When this tick is sampled, by the timer.
+    fn sampling_instant(&mut self) -> u32 {
         let delay = if self.jitter_scale == 0 {
             0
         } else {
             self.jitter.scaled_bell(self.jitter_scale) + LARGEST_BELL * self.jitter_scale
         };
-        let at = self.timer.start().wrapping_sub(delay.cast_unsigned());
-        self.sampled_at = (at >> 32) as u32;
-        let waiting = self.ring.take(self.sampled_at);
-        self.sampled_count = self.head.count().wrapping_sub(waiting);
+        let at = self.timer.end().wrapping_sub(delay.cast_unsigned());
+        (at >> 32) as u32
     }
+}
+
+/// True if a stamp is not after a sampling instant; both are of about the same time.
+const fn is_reached(time: u32, sampled_at: u32) -> bool {
+    sampled_at.wrapping_sub(time).cast_signed() >= 0
 }

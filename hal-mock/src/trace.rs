@@ -1,4 +1,4 @@
-//! The digest of a run: one number that is equal only if every input and output of every tick was.
+//! The digest of a run: one number that is equal only if every tick had the same inputs and record.
 
 use leadscrew::axis::Inputs;
 use leadscrew::hal::Latch;

@@ -108,7 +108,8 @@ impl Observed {
     }
 
     /// Mean over the ticks of a figure from the estimate and the truth at the sampling instant.
-    fn mean_now(&self, figure: impl Fn(&Estimate, State) -> f64) -> f64 {
+    #[must_use]
+    pub fn mean_now(&self, figure: impl Fn(&Estimate, State) -> f64) -> f64 {
         let values: Vec<f64> = self.errors(|_| 0.0, figure).collect();
         values.iter().sum::<f64>() / values.len() as f64
     }

@@ -14,7 +14,8 @@ fn estimator_names() -> PossibleValuesParser {
 
 /// Motion control of one machine-tool axis: simulate it, replay captures of its encoder.
 ///
-/// Without a subcommand: a demonstration on a simulated lathe, plots under target/leadscrew.
+/// Without a subcommand: a demonstration on a simulated lathe, plots under target/leadscrew of
+/// the current directory.
 #[derive(Debug, Parser)]
 #[command(name = "leadscrew", version, about, after_help = EXIT_CODES)]
 pub struct Cli {

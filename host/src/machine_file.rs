@@ -196,13 +196,30 @@ fn number<T>(field: &Field<T>, value: &Spanned<DeValue<'_>>) -> Result<f64, Comp
             format!("{name} must be a number ({unit}, {min} to {max})"),
         )
     })?;
-    if (*min..=*max).contains(&number) {
-        Ok(number)
-    } else {
-        Err(Complaint::new(
+    if !(*min..=*max).contains(&number) {
+        return Err(Complaint::new(
             value.span(),
             format!("{name} = {number} is out of range: allowed {min} to {max} ({unit})"),
-        ))
+        ));
+    }
+    match rule(name) {
+        Some((holds, expected)) if !holds(number) => Err(Complaint::new(
+            value.span(),
+            format!("{name} = {number} is not allowed: it must be {expected}"),
+        )),
+        _ => Ok(number),
+    }
+}
+
+/// Whether a value keeps a rule.
+type Holds = fn(f64) -> bool;
+
+/// What a key must keep beside its range, and the same in words.
+fn rule(name: &str) -> Option<(Holds, &'static str)> {
+    match name {
+        "edges_per_revolution" => Some((|edges| edges % 4.0 == 0.0, "a multiple of 4")),
+        "linear_scale" => Some((|choice| choice == 0.0 || choice == 1.0, "0 or 1")),
+        _ => None,
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
+use leadscrew::capture::{CaptureHealth, MAX_DELTA};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use serde::Serialize;
 
@@ -23,6 +24,64 @@ pub const COLUMNS: [&str; 11] = [
     "sigma_v",
     "sigma_a",
 ];
+
+/// What went wrong at the encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CaptureFigures {
+    /// Ticks in which edge times were lost.
+    pub overrun_ticks: u32,
+    /// Ticks in which the edge times do not explain the count; every reversal may make some.
+    pub ambiguous_ticks: u32,
+    /// Simultaneous changes of A and B.
+    pub illegal: u32,
+    /// Ticks in which the count moved further than a velocity can tell.
+    pub overspeed_ticks: u32,
+}
+
+impl From<CaptureHealth> for CaptureFigures {
+    fn from(health: CaptureHealth) -> Self {
+        Self {
+            overrun_ticks: health.overrun_ticks,
+            ambiguous_ticks: health.ambiguous_ticks,
+            illegal: health.illegal,
+            overspeed_ticks: health.overspeed_ticks,
+        }
+    }
+}
+
+impl CaptureFigures {
+    /// What makes the figures of a run doubtful, a line each. Ambiguous ticks do not: reversals have them.
+    #[must_use]
+    pub fn warnings(&self) -> String {
+        let illegal = match self.illegal {
+            0 => String::new(),
+            count => format!("warning: {count} times A and B changed at once: counts were lost\n"),
+        };
+        illegal + &overrun_warning(self.overrun_ticks) + &overspeed_warning(self.overspeed_ticks)
+    }
+}
+
+/// The warning of ticks with lost edge times, if there are any.
+#[must_use]
+pub fn overrun_warning(ticks: u32) -> String {
+    match ticks {
+        0 => String::new(),
+        _ => format!(
+            "warning: {ticks} ticks with more edges than their times fit in: raise --tick-hz\n"
+        ),
+    }
+}
+
+/// The warning of ticks in which the count moved too far, if there are any.
+#[must_use]
+pub fn overspeed_warning(ticks: u32) -> String {
+    match ticks {
+        0 => String::new(),
+        _ => format!(
+            "warning: {ticks} ticks with more than {MAX_DELTA} d: velocities are cut off there, raise --tick-hz\n"
+        ),
+    }
+}
 
 /// Lags of an estimator, ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -158,7 +217,30 @@ fn decimal(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::decimal;
+    use super::{CaptureFigures, decimal};
+
+    #[test]
+    fn all_that_went_wrong_is_warned_of_but_reversals() {
+        let sound = CaptureFigures {
+            overrun_ticks: 0,
+            ambiguous_ticks: 9,
+            illegal: 0,
+            overspeed_ticks: 0,
+        };
+        assert_eq!(sound.warnings(), "");
+        let faulty = CaptureFigures {
+            overrun_ticks: 11,
+            illegal: 12,
+            overspeed_ticks: 13,
+            ..sound
+        };
+        let warnings = faulty.warnings();
+        let lines: Vec<_> = warnings.lines().collect();
+        assert_eq!(lines.len(), 3, "{warnings}");
+        for (line, count) in lines.iter().zip(["12 times", "11 ticks", "13 ticks"]) {
+            assert!(line.starts_with(&format!("warning: {count} ")), "{line}");
+        }
+    }
 
     #[test]
     fn values_are_short_and_never_minus_zero() {

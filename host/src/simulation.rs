@@ -1,7 +1,7 @@
 //! A run of the simulated machine with every estimator listening.
 
 use leadscrew::axis::Outputs;
-use leadscrew::capture::Unwrapper;
+use leadscrew::capture::{CaptureHealth, Unwrapper};
 use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
 use leadscrew::hal::Encoder;
 use leadscrew_hal_mock::arc::State;
@@ -55,6 +55,8 @@ pub struct Run {
     pub truth: TruthTrack,
     /// All estimators of the core on the same captures.
     pub listeners: Vec<Listener>,
+    /// What went wrong at the encoder.
+    pub health: CaptureHealth,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -99,6 +101,7 @@ impl RunSpec {
             ticks,
             truth,
             listeners: listening.listeners,
+            health: simulation.axis.capture_health(),
             digest: simulation.digest(),
             tick_hz: self.scenario.tick_hz,
         })

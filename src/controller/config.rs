@@ -1,7 +1,7 @@
 //! Gains of the controller: from fractions of full command per d and tick to integers with one scale.
 
 use super::FollowingError;
-use crate::estimator::Lags;
+use crate::estimator::Delay;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
 /// Weighted inputs of the law, the integral apart.
@@ -50,18 +50,18 @@ pub struct Config {
 impl Config {
     /// Quantises `gains`; `deadband_d` in d is subtracted from the following error, `bias` in fractions
     /// of full command is added to the output, and a jump of the law decays with a time constant of
-    /// `transfer_ticks`. `lags` are those of the estimates that the law will get.
+    /// `transfer_ticks`. `delay` is that of the estimates that the law will get.
     ///
     /// # Errors
     /// [`RangeError`] naming the parameter that does not fit.
     pub fn new(
         gains: &Gains,
-        lags: &Lags,
+        delay: impl Into<Delay>,
         deadband_d: f64,
         bias: f64,
         transfer_ticks: f64,
     ) -> Result<Self, RangeError> {
-        let (weights, weight_shift) = quantise(gains, lags)?;
+        let (weights, weight_shift) = quantise(gains, delay.into())?;
         let integral = checked("integral_gain_per_d_tick", gains.integral, 0.0, 1.9e-3)?;
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
         let bias = scaled(checked("bias", bias, -1.0, 1.0)?, Command::FRAC_NBITS);
@@ -112,8 +112,8 @@ impl Config {
 /// Weights in the order of [`Config`]'s field, and their common shift.
 ///
 /// The links' references are written out in v, a and j:
-/// kv·(v − lag_v·a + lag_v²·j/2 − v̂) + ka·(a − lag_a·j − â).
-fn quantise(gains: &Gains, lags: &Lags) -> Result<([i32; TERMS], u32), RangeError> {
+/// kv·(v − lag_v·a + ⟨lag_v²⟩·j/2 − v̂) + ka·(a − lag_a·j − â).
+fn quantise(gains: &Gains, delay: Delay) -> Result<([i32; TERMS], u32), RangeError> {
     let link_v = checked("velocity_gain", gains.velocity, -MAX_GAIN, MAX_GAIN)?;
     let link_a = checked("acceleration_gain", gains.acceleration, -MAX_GAIN, MAX_GAIN)?;
     let position = checked("position_gain", gains.position, 0.0, MAX_GAIN)?;
@@ -131,10 +131,11 @@ fn quantise(gains: &Gains, lags: &Lags) -> Result<([i32; TERMS], u32), RangeErro
         MAX_GAIN,
     )?;
     let ff_j = checked("jerk_feedforward", gains.jerk_feedforward, 0.0, MAX_GAIN)?;
-    let (lag_v, lag_a) = (
-        lags.velocity.to_num::<f64>(),
-        lags.acceleration.to_num::<f64>(),
-    );
+    let Delay {
+        velocity: lag_v,
+        velocity_squared: lag_v2,
+        acceleration: lag_a,
+    } = delay;
     let exact = [
         weight(position, FollowingError::FRAC_NBITS),
         weight(derivative, FollowingError::FRAC_NBITS),
@@ -143,7 +144,7 @@ fn quantise(gains: &Gains, lags: &Lags) -> Result<([i32; TERMS], u32), RangeErro
         weight(ff_v + link_v, Velocity::FRAC_NBITS),
         weight(ff_a + link_a - lag_v * link_v, Acceleration::FRAC_NBITS),
         weight(
-            ff_j + 0.5 * lag_v * lag_v * link_v - lag_a * link_a,
+            ff_j + 0.5 * lag_v2 * link_v - lag_a * link_a,
             Jerk::FRAC_NBITS,
         ),
     ];

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! An estimate holds for an instant `lag` ticks ago, so the links compare it with the setpoint of that
-//! instant: v_ref = v − lag_v·a + lag_v²·j/2, a_ref = a − lag_a·j. Since the lags of an estimator are
-//! known beforehand, [`Config`] folds them into the weights of a and j.
+//! instant: v_ref = v − lag_v·a + ⟨lag_v²⟩·j/2, a_ref = a − lag_a·j, where ⟨lag_v²⟩ is the mean square age of
+//! what the velocity is made of ([`Delay`](crate::estimator::Delay)). Since an estimator's lags are known
+//! beforehand, [`Config`] folds them into the weights of a and j.
 //!
 //! At enable and at a change of parameters the law would jump; the jump is taken up by `transfer`,
 //! which then decays geometrically, so the output stays continuous. Integration stops while the output

@@ -23,6 +23,10 @@ impl Config {
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         2
     }
+
+    pub(super) const fn sample_age_variance(&self) -> f64 {
+        0.0
+    }
 }
 
 /// The previous difference is the whole state.
@@ -36,6 +40,11 @@ impl Estimator {
     #[must_use]
     pub const fn new(_: Config) -> Self {
         Self { previous_delta: 0 }
+    }
+
+    /// Starts anew as after a long motion at `velocity`.
+    pub fn prime(&mut self, velocity: Velocity) {
+        self.previous_delta = velocity.round().to_num();
     }
 
     /// Takes a tick's observation. An acceleration beyond ±128 d/tick² saturates.

@@ -4,11 +4,13 @@
 //! mean is the weighted mean of the differences, v = Σ α_k Δ₋ₖ, so the filter runs over the small
 //! differences. Weights are integers in Q0.30 whose sum is made exactly 2³⁰; every product and sum is
 //! then exact, position included, and only the outputs are rounded, to half their LSB. The weights
-//! themselves are off by at most 2⁻³¹ each (the newest by N·2⁻³¹).
+//! themselves are off by at most 2⁻³¹ each (the newest by N·2⁻³¹). Against an f64 oracle (test) the paper's
+//! σ = 6, N = 25 are right to half an LSB and, for motion up to 150 d/tick, 4.7e-6 d and 1.1e-6 d/tick; up to
+//! 2 047 d/tick 6.4e-5 d and 1.5e-5 d/tick.
 
-use super::{Estimate, Lags, acceleration_from, position_behind, velocity_from};
+use super::{Estimate, Lags, acceleration_from, position_behind, steady_delta, velocity_from};
 use crate::capture::Observation;
-use crate::units::{RangeError, checked};
+use crate::units::{RangeError, Velocity, checked};
 
 /// Longest window, samples.
 pub const MAX_WINDOW: usize = 64;
@@ -66,6 +68,17 @@ impl Config {
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         (self.window as u32).wrapping_add(2)
     }
+
+    pub(super) fn sample_age_variance(&self) -> f64 {
+        let moment = |power: f64| -> f64 {
+            let weighted = |(age, weight): (usize, &i32)| {
+                libm::pow(age as f64, power)
+                    * libm::ldexp(f64::from(*weight), WEIGHT_FRAC.cast_signed().wrapping_neg())
+            };
+            self.weights.iter().enumerate().map(weighted).sum()
+        };
+        moment(2.0) - moment(1.0) * moment(1.0)
+    }
 }
 
 /// Window of differences.
@@ -92,6 +105,23 @@ impl Estimator {
             newest: 0,
             behind: 0,
             velocity: 0,
+        }
+    }
+
+    /// Starts anew as after a long motion at `velocity`. Outside the tick.
+    pub fn prime(&mut self, velocity: Velocity) {
+        *self = Self::new(self.config);
+        for age in (0..MAX_WINDOW as u32).rev() {
+            self.push(steady_delta(velocity, age));
+        }
+        self.velocity = self.weighted_sum();
+        let window = self.deltas.get(self.newest..).unwrap_or(&[]);
+        let mut distance = 0_i64;
+        for (&weight, &delta) in self.config.weights.iter().zip(window) {
+            self.behind = self
+                .behind
+                .wrapping_add(i64::from(weight).wrapping_mul(distance));
+            distance = distance.wrapping_add(i64::from(delta));
         }
     }
 

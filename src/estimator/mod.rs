@@ -61,6 +61,39 @@ impl Lags {
     }
 }
 
+/// How an estimator's velocity and acceleration lie behind, for whoever compares them with a setpoint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delay {
+    /// Mean age of what the velocity is made of, lag_v, ticks.
+    pub velocity: f64,
+    /// Mean square of that age, ticks²: a velocity under constant jerk j is v − lag_v·a + this·j/2.
+    pub velocity_squared: f64,
+    /// Mean age of what the acceleration is made of, lag_a, ticks.
+    pub acceleration: f64,
+}
+
+impl From<&Lags> for Delay {
+    /// A pure delay, which has no spread.
+    fn from(lags: &Lags) -> Self {
+        let velocity: f64 = lags.velocity.to_num();
+        Self {
+            velocity,
+            velocity_squared: velocity * velocity,
+            acceleration: lags.acceleration.to_num(),
+        }
+    }
+}
+
+/// Difference of age `age` in a motion at constant `velocity`: the fractions add up without a rest.
+fn steady_delta(velocity: Velocity, age: u32) -> i32 {
+    let travelled = |ticks: u32| {
+        i64::from(velocity.to_bits())
+            .wrapping_mul(i64::from(ticks))
+            .wrapping_shr(Velocity::FRAC_NBITS)
+    };
+    travelled(age.wrapping_add(1)).wrapping_sub(travelled(age)) as i32
+}
+
 /// The count's middle less `behind`, in d with `FRAC` fractional bits; rounds to nearest.
 fn position_behind<const FRAC: u32>(observation: &Observation<'_>, behind: i64) -> Position {
     let behind = shift_rounded(behind, FRAC.wrapping_sub(Position::FRAC_NBITS));
@@ -135,6 +168,16 @@ macro_rules! estimators {
                 match self { $(Self::$variant(config) => config.lags(),)* }
             }
 
+            /// How the estimate lies behind, with the spread of its age. A difference is the mean velocity of
+            /// a tick, which adds 1/12 to the variance of the samples' ages.
+            #[must_use]
+            pub fn delay(&self) -> Delay {
+                let variance = match self { $(Self::$variant(config) => config.sample_age_variance(),)* };
+                let delay = Delay::from(&self.lags());
+                let spread = variance + 1.0 / 12.0;
+                Delay { velocity_squared: delay.velocity * delay.velocity + spread, ..delay }
+            }
+
             /// Ticks after which the first sample's influence is below 1e-6.
             #[must_use]
             pub const fn warm_up_ticks(&self) -> u32 {
@@ -156,6 +199,11 @@ macro_rules! estimators {
                 match config {
                     $(EstimatorConfig::$variant(config) => Self::$variant($module::Estimator::new(config)),)*
                 }
+            }
+
+            /// Starts anew as after a long motion at `velocity`. Outside the tick.
+            pub fn prime(&mut self, velocity: Velocity) {
+                match self { $(Self::$variant(estimator) => estimator.prime(velocity),)* }
             }
 
             /// Takes a tick's observation.

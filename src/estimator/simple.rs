@@ -3,9 +3,9 @@
 //! Over the last N differences Δ the velocity is their sum over N and the acceleration the newest
 //! less the oldest over N; the position's distance behind the newest count is a running sum of sums.
 //! All three sums are exact integers and each is divided once, so there is no drift and the outputs
-//! are right to half their own LSB.
+//! are right to half their own LSB (test against an f64 oracle).
 
-use super::{Estimate, Lags};
+use super::{Estimate, Lags, steady_delta};
 use crate::capture::Observation;
 use crate::units::{Acceleration, Position, RangeError, Velocity, checked};
 
@@ -45,6 +45,12 @@ impl Config {
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         self.window.cast_unsigned().wrapping_add(2)
     }
+
+    /// Of equal weights: (N² − 1)/12.
+    pub(super) fn sample_age_variance(&self) -> f64 {
+        let window = f64::from(self.window);
+        (window * window - 1.0) / 12.0
+    }
 }
 
 /// Window of differences and the sums over it.
@@ -69,6 +75,21 @@ impl Estimator {
             oldest: 0,
             moved: 0,
             behind: 0,
+        }
+    }
+
+    /// Starts anew as after a long motion at `velocity`. Outside the tick.
+    pub fn prime(&mut self, velocity: Velocity) {
+        *self = Self::new(self.config);
+        let window = self.config.window;
+        // The oldest place of the ring is filled first.
+        let ages = (0..window.cast_unsigned()).rev();
+        for (place, age) in self.deltas.iter_mut().zip(ages) {
+            *place = steady_delta(velocity, age);
+            self.moved = self.moved.wrapping_add(*place);
+            // A difference of age k separates the newest sample from the N − 1 − k oldest ones.
+            let older = window.wrapping_sub(1).wrapping_sub(age.cast_signed());
+            self.behind = self.behind.wrapping_add(place.wrapping_mul(older));
         }
     }
 

@@ -1,9 +1,9 @@
 //! Friction of the drive: stiction, Stribeck, coming to rest.
 
-use leadscrew_hal_mock::arc::Arc;
+use leadscrew_hal_mock::arc::{Arc, State};
 use leadscrew_hal_mock::drive::DriveParams;
 
-use crate::drive::{bare, drive, run};
+use crate::drive::{bare, command, drive, run};
 
 /// Friction of the reference machine alone: 1.5 d/tick kinetic, 3 static, Stribeck velocity 1.
 fn rough() -> DriveParams {
@@ -79,4 +79,33 @@ fn a_moving_shaft_goes_on_below_the_static_level_until_it_sticks() {
             .iter()
             .all(|arc| arc.end().acceleration.abs() <= 2.1 + 1e-12)
     );
+}
+
+#[test]
+fn a_shaft_that_friction_caught_starts_again_as_one_that_never_moved() {
+    let shaft_at = |position| State {
+        position,
+        ..State::default()
+    };
+    for slow in [0.0, 2.0 / 160.0, -2.0 / 160.0] {
+        let mut caught = drive(&rough(), 1000.0);
+        run(&mut caught, 0.5, 1000);
+        // The last tick run is the one within which the shaft comes to rest.
+        let stop = (0..2000)
+            .map(|_| caught.step(command(slow), true))
+            .find(|arc| arc.end().velocity == 0.0)
+            .expect("it sticks");
+        assert!(stop.start.velocity > 0.0, "{stop:?}");
+        assert_eq!(caught.shaft(), shaft_at(stop.end().position), "{slow}");
+
+        for demand in [0.1, -0.1] {
+            let again = run(&mut caught.clone(), demand, 10);
+            let fresh = run(&mut drive(&rough(), 1000.0), demand, 10);
+            assert_eq!(again[0].start, shaft_at(stop.end().position), "{slow}");
+            for (again, fresh) in again.iter().zip(&fresh) {
+                assert_eq!(again.start.velocity, fresh.start.velocity);
+                assert_eq!(again.jerk, fresh.jerk, "{slow} then {demand}");
+            }
+        }
+    }
 }

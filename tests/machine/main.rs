@@ -7,6 +7,7 @@ mod drive;
 mod encoder_capture;
 mod encoder_edges;
 mod encoder_errors;
+mod encoder_index;
 mod friction;
 mod scenes;
 #[path = "../support/seeded.rs"]

@@ -58,7 +58,7 @@ struct Findings {
 pub fn run() -> Result<()> {
     let text = fs::read_to_string(root().join(CONFIG)).map_err(|e| format!("{CONFIG}: {e}"))?;
     let config: Config = toml::from_str(&text).map_err(|e| format!("{CONFIG}: {e}"))?;
-    let json = cargo(["metadata", "--format-version", "1", "--locked"]).output()?;
+    let json = metadata()?;
     let metadata: Metadata =
         serde_json::from_str(&json).map_err(|e| format!("cargo metadata: {e}"))?;
     let findings = check(&config, &metadata.packages);
@@ -70,6 +70,18 @@ pub fn run() -> Result<()> {
     }
     println!("{} packages checked", metadata.packages.len());
     Ok(())
+}
+
+/// What cargo says of the dependencies; from the network only if they are not all fetched yet.
+fn metadata() -> Result<String> {
+    let online = || cargo(["metadata", "--format-version", "1", "--locked"]);
+    let offline = || online().words(&["--offline"]);
+    // Tried quietly first: what cargo says of a crate that is missing would look like our failure.
+    if offline().succeeds() {
+        offline().output()
+    } else {
+        online().output()
+    }
 }
 
 fn check(config: &Config, packages: &[Package]) -> Findings {

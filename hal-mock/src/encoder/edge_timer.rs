@@ -47,9 +47,9 @@ impl EdgeTimer {
         }
     }
 
-    /// The timer at the start of the tick, Q.32.
-    pub const fn start(&self) -> u64 {
-        self.start
+    /// The timer at the end of the tick, Q.32.
+    pub const fn end(&self) -> u64 {
+        self.start.wrapping_add(self.per_tick)
     }
 
     /// Stamps an edge at a time within the tick, Q.30. Stamps never run backward, whatever the noise.
@@ -64,7 +64,7 @@ impl EdgeTimer {
     /// Goes on to the next tick.
     pub const fn end_tick(&mut self) {
         let before = self.whole_start();
-        self.start = self.start.wrapping_add(self.per_tick);
+        self.start = self.end();
         self.begun = (self.start & 0xffff_ffff) << self.fraction_bits;
         let clocks = self.whole_start().wrapping_sub(before).cast_signed();
         self.newest = self.newest.saturating_sub(clocks);

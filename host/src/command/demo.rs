@@ -1,5 +1,6 @@
 //! The demonstration: what each estimator of the papers makes of the same encoder.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use comfy_table::Table;
@@ -14,6 +15,8 @@ use crate::report::text_table;
 use crate::simulation::{Run, RunSpec, all_estimators};
 use crate::statistics::Spread;
 
+/// The stretch of cruise that is shown close up, s.
+const ZOOM_S: RangeInclusive<f64> = 1.0..=1.1;
 const TICK_HZ: f64 = 1000.0;
 const SEED: u64 = 1;
 /// Where the plots go.
@@ -55,6 +58,7 @@ pub fn run() -> Result<(), CommandError> {
     ))?;
     for (name, figure) in [
         ("estimates", estimates_figure(judged)),
+        ("zoom", zoom_figure(judged)),
         ("following-error", error_figure(&runs)),
     ] {
         for extension in ["svg", "png"] {
@@ -74,9 +78,10 @@ Encoder of 10 000 d/rev with errors of a real disc, drive with friction, delay
 
 const EXPLANATION: &str = "
 d      one count of the encoder, 1 µm
-sigma  rms error while moving, against the truth at the instant it is for
+rms    rms error over the move, ramps included, seed 1, against the truth at the
+       instant it is for
 tacho  rms difference from a tachogenerator read in steps of 0.233 d/tick
-cut    how many times smaller than by plain differences: of sigma a, of tacho
+cut    how many times smaller than by plain differences: of rms a, of tacho
 error  following error with that estimator in a loop that is tuned alike for all
 
 ";
@@ -85,8 +90,8 @@ fn table(run: &Run, errors: &[(&str, Spread)]) -> Table {
     let mut table = text_table(&[
         "estimator",
         "lag x/v/a\nticks",
-        "sigma v\nd/tick",
-        "sigma a\nd/tick²",
+        "rms v\nd/tick",
+        "rms a\nd/tick²",
         "cut",
         "tacho\nd/tick",
         "cut",
@@ -164,6 +169,30 @@ fn estimates_figure(run: &Run) -> Figure {
             panel(figures::VELOCITY, velocities),
             panel("velocity error, d/tick", errors),
             panel(figures::ACCELERATION, accelerations).with_y_limits(-2.2, 2.2),
+        ],
+    )
+}
+
+/// Velocity error and acceleration of each method in a stretch of cruise short enough to tell them apart.
+fn zoom_figure(run: &Run) -> Figure {
+    let shown = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
+        points
+            .into_iter()
+            .filter(|(time, _)| ZOOM_S.contains(time))
+            .collect()
+    };
+    let (mut errors, mut accelerations) = (Vec::new(), Vec::new());
+    for listener in &run.listeners {
+        let name = listener.config.name();
+        let acceleration = acceleration_points(&listener.estimates, run.tick_hz);
+        errors.push(estimator_series(name, shown(run.velocity_errors(listener))));
+        accelerations.push(estimator_series(name, shown(acceleration)));
+    }
+    Figure::new(
+        "16K20F3 Z: 0.1 s of the cruise; plain differences go on beyond the frame",
+        vec![
+            panel("velocity error, d/tick", errors).with_y_limits(-0.4, 0.4),
+            panel(figures::ACCELERATION, accelerations).with_y_limits(-0.3, 0.3),
         ],
     )
 }

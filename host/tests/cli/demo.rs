@@ -8,8 +8,8 @@ use crate::{Folder, assert_clear, assert_says, text};
 /// Widest line of a plain terminal.
 const TERMINAL_COLUMNS: usize = 80;
 
-/// Figures of an estimator: three lags, sigma v, sigma a and its cut, tacho and its cut, error peak
-/// and rms.
+/// Figures of an estimator: three lags, rms v, rms a and its cut, tacho and its cut, error peak and
+/// rms.
 fn figures(printed: &str, name: &str) -> [f64; 10] {
     let row = printed.lines().find(|line| line.starts_with(name));
     let row = row.unwrap_or_else(|| panic!("{name} is not in the table:\n{printed}"));
@@ -37,11 +37,12 @@ fn prints_a_table_of_every_estimator_and_the_plots() {
             _ => assert!(cut > 1.0 && tacho_cut > 1.0, "{name}"),
         }
     }
+    assert_says(&printed, &["ramps included, seed 1"]);
     let plots: Vec<_> = printed
         .lines()
         .filter(|line| line.starts_with("target/leadscrew/"))
         .collect();
-    assert_eq!(plots.len(), 4, "{printed}");
+    assert_eq!(plots.len(), 6, "{printed}");
     for plot in plots {
         assert_picture(&folder.path(plot));
     }

@@ -11,7 +11,7 @@ fn help_names_every_option_its_unit_and_its_default() {
         &[
             "sim",
             "replay",
-            "target/leadscrew",
+            "target/leadscrew of the current directory",
             "Exit codes: 0 done, 1 the job failed, 2 bad usage",
         ],
     );

@@ -188,6 +188,37 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
+fn rules_beside_the_range_name_the_line() {
+    let message = refused(2, "[disc]\nedges_per_revolution = 10001");
+    assert_says(
+        &message,
+        &["edges_per_revolution = 10001", "must be a multiple of 4"],
+    );
+    let message = refused(3, "[mount]\n\nlinear_scale = 0.4");
+    assert_says(&message, &["linear_scale = 0.4", "must be 0 or 1"]);
+    let folder = Folder::new();
+    digest_of(
+        &folder,
+        "[disc]\nedges_per_revolution = 8192\n[mount]\nlinear_scale = 1",
+    );
+}
+
+#[test]
+fn a_drive_that_no_loop_can_be_tuned_on_says_which_keys_did_it() {
+    let folder = Folder::new();
+    for (drive, tick_hz) in [
+        ("natural_period_s = 10", 1000),
+        ("natural_period_s = 1\ndamping = 10", 40_000),
+    ] {
+        folder.write("slack.toml", format!("[drive]\n{drive}"));
+        let message = folder.refused(1, &format!("sim --machine slack.toml --tick-hz {tick_hz}"));
+        let at =
+            format!("slack.toml: a loop cannot be tuned on this machine's drive at {tick_hz} Hz");
+        assert_says(&message, &[&at, "natural_period_s = 1", "damping = "]);
+    }
+}
+
+#[test]
 fn a_machine_too_slow_for_the_feed_says_so() {
     let folder = Folder::new();
     folder.write("slow.toml", "[drive]\nfull_command_feed_mm_per_min = 1000");

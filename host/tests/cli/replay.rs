@@ -71,10 +71,12 @@ fn json_has_its_keys() {
     assert_eq!(
         keys(&report),
         [
+            "ambiguous_ticks",
             "edges",
             "estimators",
             "final_count",
             "illegal",
+            "overrun_ticks",
             "overspeed_ticks",
             "schema",
             "tick_hz",

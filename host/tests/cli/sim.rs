@@ -18,7 +18,15 @@ fn the_text_says_what_ran_and_lines_up() {
     let printed = Folder::new().printed(SHORT);
     let first = "16k20f3: 5 mm at 9000 mm/min and back, 1000 Hz, exponential in the loop, seed 1\n";
     assert!(printed.starts_with(first), "{printed}");
-    assert_says(&printed, &["digest ", "following error, d: peak "]);
+    assert_says(
+        &printed,
+        &[
+            "digest ",
+            "following error, d: peak ",
+            "rms errors over the move, ramps included, seed 1\n",
+        ],
+    );
+    assert!(!printed.contains("warning"), "{printed}");
     let (_, table) = printed.split_once("\n\n").expect("a table");
     let widths: Vec<_> = table.lines().map(|line| line.chars().count()).collect();
     assert_eq!(widths.len(), 2 + EstimatorConfig::NAMES.len());
@@ -31,6 +39,7 @@ fn json_has_its_keys_and_stands_alone() {
     assert_eq!(
         keys(&report),
         [
+            "capture",
             "digest",
             "estimator",
             "estimators",
@@ -67,6 +76,32 @@ fn json_has_its_keys_and_stands_alone() {
     }
     let digest = report["digest"].as_str().expect("text");
     assert!(digest.len() == 16 && digest.chars().all(|digit| digit.is_ascii_hexdigit()));
+}
+
+#[test]
+fn the_health_of_the_encoder_is_told() {
+    let folder = Folder::new();
+    let report = folder.json(SHORT);
+    let capture = &report["capture"];
+    assert_eq!(
+        keys(capture),
+        [
+            "ambiguous_ticks",
+            "illegal",
+            "overrun_ticks",
+            "overspeed_ticks"
+        ]
+    );
+    for sound in ["illegal", "overrun_ticks", "overspeed_ticks"] {
+        assert_eq!(capture[sound], 0, "{sound}");
+    }
+    // 150 mm/s are 2 046.9 d a tick; a velocity holds 2 047, which the overshoot passes.
+    folder.write("fine.toml", "[mount]\ncounts_per_mm = 13646");
+    let fine = "sim --move-mm 100 --machine fine.toml";
+    let ticks = number(&folder.json(fine), "/capture/overspeed_ticks");
+    assert!(ticks > 0.0);
+    let warning = format!("warning: {ticks} ticks with more than 2047 d");
+    assert_says(&folder.printed(fine), &[&warning]);
 }
 
 #[test]

@@ -109,13 +109,13 @@ fn SysTick() {
         enable: outside() != 0,
     }));
     for word in record.to_bytes() {
-        // SAFETY: a device register of the board.
+        // SAFETY: `OUTSIDE` is a device register of the board; the image is not run.
         unsafe { write_volatile(OUTSIDE, u32::from(word)) };
     }
 }
 
 fn outside() -> u32 {
-    // SAFETY: a device register of the board.
+    // SAFETY: `OUTSIDE` is a device register of the board; the image is not run.
     unsafe { read_volatile(OUTSIDE) }
 }
 

@@ -5,7 +5,7 @@ mod report;
 use std::fmt;
 use std::path::Path;
 
-use leadscrew::capture::Unwrapper;
+use leadscrew::capture::{CaptureHealth, Unwrapper};
 use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
 
 use super::{
@@ -76,7 +76,7 @@ type Curve = fn(&[Estimate], f64) -> Vec<(f64, f64)>;
 struct Replay {
     tick_hz: f64,
     totals: Totals,
-    overspeed_ticks: u32,
+    health: CaptureHealth,
     counts: Vec<i64>,
     tracks: Vec<Track>,
 }
@@ -126,7 +126,7 @@ impl Replay {
         Ok(Self {
             tick_hz,
             totals: sampler.totals(),
-            overspeed_ticks: unwrapper.health().overspeed_ticks,
+            health: unwrapper.health(),
             counts,
             tracks,
         })

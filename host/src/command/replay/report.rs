@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Replay, Span, Track};
-use crate::report::{LagFigures, figure_or_dash, text_table};
+use crate::report::{LagFigures, figure_or_dash, overrun_warning, overspeed_warning, text_table};
 use crate::statistics::{Spread, slope};
 
 /// The report of a replay.
@@ -22,6 +22,10 @@ pub(super) struct Report {
     estimators: BTreeMap<&'static str, Figures>,
     /// Ticks in which the count moved further than a velocity can tell.
     overspeed_ticks: u32,
+    /// Ticks in which edge times were lost.
+    overrun_ticks: u32,
+    /// Ticks in which the edge times do not explain the count.
+    ambiguous_ticks: u32,
     #[serde(skip)]
     span: String,
 }
@@ -93,7 +97,9 @@ impl Report {
                 lag: "tick",
             },
             estimators: replay.tracks.iter().map(figures).collect(),
-            overspeed_ticks: replay.overspeed_ticks,
+            overspeed_ticks: replay.health.overspeed_ticks,
+            overrun_ticks: replay.health.overrun_ticks,
+            ambiguous_ticks: replay.health.ambiguous_ticks,
             span: span.to_string(),
         }
     }
@@ -141,13 +147,6 @@ impl Report {
         if self.illegal > 0 {
             text += "warning: A and B changed at once, so counts were lost: capture at a higher sample rate\n";
         }
-        if self.overspeed_ticks > 0 {
-            text += &format!(
-                "warning: {} ticks with more than {} d: velocities are cut off there, raise --tick-hz\n",
-                self.overspeed_ticks,
-                leadscrew::capture::MAX_DELTA
-            );
-        }
-        text
+        text + &overrun_warning(self.overrun_ticks) + &overspeed_warning(self.overspeed_ticks)
     }
 }

@@ -5,7 +5,8 @@ mod report;
 use std::path::Path;
 
 use leadscrew::params::ParamError;
-use leadscrew::units::checked;
+use leadscrew::units::{RangeError, checked};
+use leadscrew_hal_mock::drive::DriveParams;
 use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError};
 
@@ -50,7 +51,9 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
     }
     check_outputs(&args.output, Some(Path::new(&args.machine)))?;
     let spec = spec(args, machine)?;
-    let run = spec.run().map_err(|error| blame_option(args, error))?;
+    let run = spec
+        .run()
+        .map_err(|error| blame_option(args, &spec.machine.drive, error))?;
     if let Some(path) = &args.output.csv {
         write_csv(path, &spec, &run)?;
     }
@@ -116,8 +119,9 @@ fn check_length(args: &SimArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// An error of the scenario with the option that led to it: its parameters are named otherwise.
-fn blame_option(args: &SimArgs, error: ScenarioError) -> CommandError {
+/// An error of the scenario with the option, or the drive, that led to it: its parameters are named
+/// otherwise.
+fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> CommandError {
     let feed = format!("--feed {}", args.feed);
     let blamed = match &error {
         ScenarioError::Param(ParamError::FeedTooHigh { .. }) => feed,
@@ -127,11 +131,23 @@ fn blame_option(args: &SimArgs, error: ScenarioError) -> CommandError {
             "max_acceleration_d_per_tick2" | "max_jerk_d_per_tick3" => {
                 format!("--tick-hz {}", args.tick_hz)
             }
+            name if name.contains("gain") || name.contains("feedforward") => {
+                return untunable(args, drive, range);
+            }
             _ => return error.into(),
         },
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
     };
     CommandError::Usage(format!("{blamed}: {error}"))
+}
+
+/// The controller's figures follow from the drive's, and only those are in a machine file.
+fn untunable(args: &SimArgs, drive: &DriveParams, range: &RangeError) -> CommandError {
+    CommandError::Data(format!(
+        "{}: a loop cannot be tuned on this machine's drive at {} Hz: [drive] natural_period_s = {} and \
+         damping = {} give no usable gain ({range}): make them smaller or change --tick-hz",
+        args.machine, args.tick_hz, drive.natural_period_s, drive.damping
+    ))
 }
 
 fn write_csv(path: &Path, spec: &RunSpec, run: &Run) -> Result<(), CommandError> {

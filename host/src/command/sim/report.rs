@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use leadscrew::estimator::EstimatorConfig;
 use serde::Serialize;
 
-use crate::report::{LagFigures, figure_or_dash, text_table};
+use crate::report::{CaptureFigures, LagFigures, figure_or_dash, text_table};
 use crate::simulation::{Accuracy, Listener, Run, RunSpec};
 use crate::statistics::Spread;
 
@@ -24,6 +24,7 @@ pub(super) struct Report {
     units: Units,
     following_error: FollowingError,
     estimators: BTreeMap<&'static str, EstimatorFigures>,
+    capture: CaptureFigures,
 }
 
 #[derive(Serialize)]
@@ -98,6 +99,7 @@ impl Report {
                 at_end,
             },
             estimators: run.listeners.iter().map(figures).collect(),
+            capture: run.health.into(),
         }
     }
 
@@ -105,8 +107,8 @@ impl Report {
     pub(super) fn to_text(&self) -> String {
         let mut table = text_table(&[
             "estimator",
-            "sigma v\nd/tick",
-            "sigma a\nd/tick²",
+            "rms v\nd/tick",
+            "rms a\nd/tick²",
             "tacho\nd/tick",
             "lag x/v/a\nticks",
         ]);
@@ -122,7 +124,8 @@ impl Report {
         format!(
             "{}: {} mm at {} mm/min and back, {} Hz, {} in the loop, seed {}\n\
              {} ticks, digest {}\n\
-             following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n\n\
+             following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n\
+             rms v, rms a: rms errors over the move, ramps included, seed {}\n{}\n\
              {}\n",
             self.machine,
             self.move_mm,
@@ -135,6 +138,8 @@ impl Report {
             self.following_error.peak,
             self.following_error.rms,
             self.following_error.at_end,
+            self.seed,
+            self.capture.warnings(),
             table.trim_fmt(),
         )
     }

@@ -4,6 +4,7 @@
 use board_mps2_an386::instructions::Counter;
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::hal::{Capture, Latch};
+use leadscrew::quadrature::Decoder;
 use leadscrew::telemetry::Record;
 use leadscrew_hal_mock::scenario::ScenarioError;
 use static_cell::ConstStaticCell;
@@ -23,7 +24,8 @@ static SAMPLES: ConstStaticCell<[Samples; 4]> = ConstStaticCell::new([
     Samples::of(ESTIMATORS[3]),
 ]);
 
-static EDGE: ConstStaticCell<Samples> = ConstStaticCell::new(Samples::of("edge"));
+static EDGE: ConstStaticCell<[Samples; 2]> =
+    ConstStaticCell::new([Samples::of("edges_150"), Samples::of("decoder_step")]);
 
 /// A linear congruential generator: bad enough inputs.
 struct Dice(u64);
@@ -92,15 +94,17 @@ fn inputs<'a>(dice: &mut Dice, times: &'a [u32; EDGES]) -> Inputs<'a> {
     }
 }
 
-/// Instructions of a step with a full ring less one without edges, over the edges: the papers'
-/// estimators do not look at them.
+/// What an edge costs beyond the tick: nothing in the step, as the papers' estimators do not look at edges
+/// (`edges_150` is a step with 150 edge times less one without), and a step of the software decoder where
+/// no hardware decodes.
 fn edge(counter: &mut Counter) -> Result<(), ScenarioError> {
-    let samples = EDGE.take();
+    let [edges, decoded] = EDGE.take();
     let (config, _) = config(estimators()?[1])?;
     let times = [1_u32; EDGES];
     let (mut with, mut without) = (Axis::new(config), Axis::new(config));
+    let mut decoder = Decoder::new(false, false);
     let mut count = 0;
-    for tick in 0..500 {
+    for tick in 0..500_u32 {
         count += EDGES as u32;
         let bare = Capture {
             count,
@@ -127,8 +131,11 @@ fn edge(counter: &mut Counter) -> Result<(), ScenarioError> {
                 })
                 .command
         });
-        samples.push(dear.saturating_sub(cheap) / EDGES as u32);
+        edges.push(dear.saturating_sub(cheap));
+        let (a, b) = (tick % 4 < 2, tick.wrapping_add(1) % 4 < 2);
+        decoded.push(counter.count(|| decoder.step(a, b)));
     }
-    samples.log("capture");
+    edges.log("capture");
+    decoded.log("quadrature");
     Ok(())
 }
