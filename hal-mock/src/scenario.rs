@@ -151,6 +151,39 @@ impl Script {
     }
 }
 
+/// What a run is made of, at rest.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The machine.
+    pub machine: Machine,
+    /// The axis on it, tuned for it.
+    pub axis: Axis,
+    /// The moves.
+    pub script: Script,
+}
+
+impl Setup {
+    /// `scenario` on the machine `params` with the errors that `seed` draws, by an axis with `estimator`
+    /// in its loop.
+    ///
+    /// # Errors
+    /// A parameter out of range, or a move that cannot be planned.
+    pub fn new(
+        scenario: &MoveAndBack,
+        params: &MachineParams,
+        estimator: EstimatorConfig,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
+        let axis = scenario.axis_params(params, estimator)?;
+        let config = axis.validate()?;
+        Ok(Self {
+            script: Script::new(scenario, axis.motion.counts_per_mm, &config)?,
+            machine: Machine::new(params, scenario.tick_hz, seed)?,
+            axis: Axis::new(config),
+        })
+    }
+}
+
 /// A run on the host: the machine, the axis on it and the script, tick by tick.
 #[derive(Clone)]
 pub struct Simulation {
@@ -166,22 +199,22 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// `scenario` on the machine `params` with the errors that `seed` draws, by an axis with `estimator`
-    /// in its loop.
+    /// A run of what [`Setup::new`] makes of the same arguments.
     ///
     /// # Errors
-    /// A parameter out of range, or a move that cannot be planned.
+    /// As [`Setup::new`].
     pub fn prepare(
         scenario: &MoveAndBack,
         params: &MachineParams,
         estimator: EstimatorConfig,
         seed: u64,
     ) -> Result<Self, ScenarioError> {
-        let axis = scenario.axis_params(params, estimator)?;
-        let config = axis.validate()?;
-        let script = Script::new(scenario, axis.motion.counts_per_mm, &config)?;
-        let machine = Machine::new(params, scenario.tick_hz, seed)?;
-        Ok(Self::new(machine, Axis::new(config), script))
+        let Setup {
+            machine,
+            axis,
+            script,
+        } = Setup::new(scenario, params, estimator, seed)?;
+        Ok(Self::new(machine, axis, script))
     }
 
     /// A run of `script` by `axis` on `machine`, both at rest.

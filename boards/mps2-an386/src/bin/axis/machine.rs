@@ -1,43 +1,23 @@
 //! The machine in the guest: what its interrupt does, and what the run is made of.
 
 use board_mps2_an386::handoff::{Giver, Taker};
-use leadscrew::axis::{Axis, Inputs};
+use leadscrew::axis::Inputs;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder;
 use leadscrew::telemetry::Record;
 use leadscrew_app::options::Options;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Setup};
 use leadscrew_hal_mock::trace::TraceDigest;
 
 /// Seed of the encoder's errors and of all noise.
 const SEED: u64 = 1;
 
-/// What the run is made of.
-pub struct Scenario {
-    /// The machine.
-    pub machine: Machine,
-    /// The axis on it.
-    pub axis: Axis,
-    /// The moves.
-    pub script: Script,
-}
-
-impl Scenario {
-    /// The standard move on the reference machine, seed 1, exponential smoothing in the loop.
-    pub fn new(options: &Options) -> Result<Self, ScenarioError> {
-        let tick_hz = f64::from(options.tick_hz);
-        let scenario = MoveAndBack::standard(tick_hz);
-        let machine = MachineParams::z_16k20f3();
-        let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
-        let params = scenario.axis_params(&machine, estimator)?;
-        let config = params.validate()?;
-        Ok(Self {
-            script: Script::new(&scenario, params.motion.counts_per_mm, &config)?,
-            machine: Machine::new(&machine, tick_hz, SEED)?,
-            axis: Axis::new(config),
-        })
-    }
+/// The standard move on the reference machine, exponential smoothing in the loop.
+pub fn standard_move(options: &Options) -> Result<Setup, ScenarioError> {
+    let scenario = MoveAndBack::standard(f64::from(options.tick_hz));
+    let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
+    Setup::new(&scenario, &MachineParams::z_16k20f3(), estimator, SEED)
 }
 
 /// The machine interrupt's state.

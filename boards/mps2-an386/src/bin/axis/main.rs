@@ -38,9 +38,10 @@ use leadscrew_app::options::Options;
 use leadscrew_app::telemetry::{Plan, Ready};
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
 use leadscrew_hal_mock::machine::Machine;
+use leadscrew_hal_mock::scenario::Setup;
 use static_cell::{ConstStaticCell, StaticCell};
 
-use machine::{MachineState, Scenario};
+use machine::{MachineState, standard_move};
 
 /// The tick's distance behind the machine step, in 1/8 of the period.
 const TICK_PHASE: u32 = 6;
@@ -124,7 +125,7 @@ fn SPARE30() {
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let options = options();
-    let scenario = match Scenario::new(&options) {
+    let scenario = match standard_move(&options) {
         Ok(scenario) => scenario,
         Err(_) => {
             defmt::error!("the scenario does not fit the machine");
@@ -164,7 +165,7 @@ fn options() -> Options {
 
 /// Hands every interrupt its state; gives the ends of the queues that thread mode holds.
 fn wire(
-    scenario: Scenario,
+    scenario: Setup,
     period: u32,
     ticks: u32,
 ) -> (Producer<'static, Request>, Consumer<'static, Record>) {

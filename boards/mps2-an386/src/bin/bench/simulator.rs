@@ -1,7 +1,7 @@
 //! The simulated machine: its step has to leave room for the tick at 1 and at 2.5 kHz.
 
 use board_mps2_an386::instructions::Counter;
-use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::axis::{Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder as _;
 use leadscrew::telemetry::Record;
@@ -11,7 +11,7 @@ use leadscrew_hal_mock::carriage::Carriage;
 use leadscrew_hal_mock::drive::Drive;
 use leadscrew_hal_mock::encoder::Encoder;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Setup};
 use leadscrew_hal_mock::trace::TraceDigest;
 use static_cell::ConstStaticCell;
 
@@ -85,11 +85,11 @@ fn there_and_back(
         ..MoveAndBack::standard(tick_hz)
     };
     let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
-    let params = scenario.axis_params(&MachineParams::z_16k20f3(), estimator)?;
-    let config = params.validate()?;
-    let script = Script::new(&scenario, params.motion.counts_per_mm, &config)?;
-    let mut machine = Machine::new(&MachineParams::z_16k20f3(), tick_hz, SEED)?;
-    let mut axis = Axis::new(config);
+    let Setup {
+        mut machine,
+        mut axis,
+        script,
+    } = Setup::new(&scenario, &MachineParams::z_16k20f3(), estimator, SEED)?;
     let mut digest = TraceDigest::new();
     let mut applied = Outputs::default();
     let mut moves = script.moves.iter().peekable();
