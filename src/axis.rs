@@ -54,7 +54,7 @@ pub struct Axis {
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
-    enabled: bool,
+    /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
 }
 
@@ -70,7 +70,6 @@ impl Axis {
             output: Output::new(config.output),
             config,
             tick: 0,
-            enabled: false,
             outputs: Outputs::default(),
         }
     }
@@ -81,10 +80,9 @@ impl Axis {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         let position = observation.position();
-        if !(inputs.enable && self.enabled) {
+        if !(inputs.enable && self.outputs.enabled) {
             self.begin(position);
         }
-        self.enabled = inputs.enable;
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -120,7 +118,7 @@ impl Axis {
     /// # Errors
     /// [`QueueError`]; the axis then goes on as it was.
     pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.enabled {
+        if !self.outputs.enabled {
             return Err(QueueError::Disabled);
         }
         self.trajectory

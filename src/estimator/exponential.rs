@@ -8,7 +8,7 @@
 //! adds: at the paper's α = 0.18 and 150 d/tick 7.8e-7 d and 2.8e-7 d/tick, at 2 047 d/tick 1.1e-5 d and
 //! 3.9e-6 d/tick.
 
-use super::{Estimate, Lags, acceleration_from, position_behind, velocity_from};
+use super::{Estimate, Lags, estimate_from};
 use crate::capture::Observation;
 use crate::units::{RangeError, Velocity, checked};
 
@@ -93,15 +93,10 @@ impl Estimator {
         let step = i64::from(observation.delta).wrapping_shl(STATE_FRAC);
         let ahead = self.behind.wrapping_add(step);
         let velocity = scale(ahead, self.config.alpha);
-        let acceleration = velocity.wrapping_sub(self.velocity);
+        let change = velocity.wrapping_sub(self.velocity);
         self.behind = ahead.wrapping_sub(velocity);
         self.velocity = velocity;
-        Estimate {
-            position: position_behind::<STATE_FRAC>(observation, self.behind),
-            velocity: velocity_from::<STATE_FRAC>(velocity),
-            acceleration: acceleration_from::<STATE_FRAC>(acceleration),
-            lags: self.config.lags,
-        }
+        estimate_from::<STATE_FRAC>(observation, self.behind, velocity, change, self.config.lags)
     }
 }
 

@@ -8,12 +8,9 @@
 //! σ = 6, N = 25 are right to half an LSB and, for motion up to 150 d/tick, 4.7e-6 d and 1.1e-6 d/tick; up to
 //! 2 047 d/tick 6.4e-5 d and 1.5e-5 d/tick.
 
-use super::{Estimate, Lags, acceleration_from, position_behind, steady_delta, velocity_from};
+use super::{Estimate, Lags, MAX_WINDOW, checked_window, estimate_from, steady_delta};
 use crate::capture::Observation;
 use crate::units::{RangeError, Velocity, checked};
-
-/// Longest window, samples.
-pub const MAX_WINDOW: usize = 64;
 
 const WEIGHT_FRAC: u32 = 30;
 
@@ -31,17 +28,11 @@ impl Config {
     /// 25 samples hold 99.99 % of that bell).
     ///
     /// # Errors
-    /// [`RangeError`] unless 0.1 ≤ σ ≤ 64 and 1 ≤ window ≤ [`MAX_WINDOW`].
+    /// [`RangeError`] unless 0.1 ≤ σ ≤ 64 and 1 ≤ window ≤ 64.
     pub fn new(sigma_ticks: f64, window: u32) -> Result<Self, RangeError> {
         let sigma = checked("estimator.sigma_ticks", sigma_ticks, 0.1, 64.0)?;
-        checked(
-            "estimator.window",
-            f64::from(window),
-            1.0,
-            MAX_WINDOW as f64,
-        )?;
+        let window = checked_window(window)? as usize;
         let bell = |age: usize| libm::exp(-libm::pow(age as f64 / sigma, 2.0) / 2.0);
-        let window = window as usize;
         let total: f64 = (0..window).map(bell).sum();
 
         let mut weights = [0_i32; MAX_WINDOW];
@@ -129,16 +120,11 @@ impl Estimator {
     pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
         self.push(observation.delta);
         let velocity = self.weighted_sum();
-        let acceleration = velocity.wrapping_sub(self.velocity);
+        let change = velocity.wrapping_sub(self.velocity);
         let step = i64::from(observation.delta).wrapping_shl(WEIGHT_FRAC);
         self.behind = self.behind.wrapping_add(step).wrapping_sub(velocity);
         self.velocity = velocity;
-        Estimate {
-            position: position_behind::<WEIGHT_FRAC>(observation, self.behind),
-            velocity: velocity_from::<WEIGHT_FRAC>(velocity),
-            acceleration: acceleration_from::<WEIGHT_FRAC>(acceleration),
-            lags: self.config.lags,
-        }
+        estimate_from::<WEIGHT_FRAC>(observation, self.behind, velocity, change, self.config.lags)
     }
 
     fn push(&mut self, delta: i32) {

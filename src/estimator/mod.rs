@@ -21,7 +21,7 @@ pub mod gaussian;
 pub mod simple;
 
 use crate::capture::Observation;
-use crate::units::{Acceleration, Lag, Position, RangeError, Velocity};
+use crate::units::{Acceleration, Lag, Position, RangeError, Velocity, checked};
 
 /// What an estimator says after a tick; each quantity holds for the instant `lag` ticks before the
 /// sample.
@@ -94,22 +94,38 @@ fn steady_delta(velocity: Velocity, age: u32) -> i32 {
     travelled(age.wrapping_add(1)).wrapping_sub(travelled(age)) as i32
 }
 
-/// The count's middle less `behind`, in d with `FRAC` fractional bits; rounds to nearest.
-fn position_behind<const FRAC: u32>(observation: &Observation<'_>, behind: i64) -> Position {
-    let behind = shift_rounded(behind, FRAC.wrapping_sub(Position::FRAC_NBITS));
-    Position::from_bits(observation.position().to_bits().wrapping_sub(behind))
+/// An estimate from state with `FRAC` fractional bits: the distance of the position `behind` the count's
+/// middle, the velocity and its change since the previous tick. Rounds to nearest; the velocity is a mean of
+/// [`Observation::delta`]s, which fit its format, the acceleration saturates.
+fn estimate_from<const FRAC: u32>(
+    observation: &Observation<'_>,
+    behind: i64,
+    velocity: i64,
+    change: i64,
+    lags: Lags,
+) -> Estimate {
+    let rounded = |value: i64, frac: u32| shift_rounded(value, FRAC.wrapping_sub(frac));
+    let behind = rounded(behind, Position::FRAC_NBITS);
+    Estimate {
+        position: Position::from_bits(observation.position().to_bits().wrapping_sub(behind)),
+        velocity: Velocity::from_bits(rounded(velocity, Velocity::FRAC_NBITS) as i32),
+        acceleration: Acceleration::from_bits(saturate(rounded(change, Acceleration::FRAC_NBITS))),
+        lags,
+    }
 }
 
-/// A velocity from a value with `FRAC` fractional bits; rounds to nearest. The value is a mean of
-/// [`Observation::delta`]s, which fit the format.
-fn velocity_from<const FRAC: u32>(value: i64) -> Velocity {
-    Velocity::from_bits(shift_rounded(value, FRAC.wrapping_sub(Velocity::FRAC_NBITS)) as i32)
-}
+/// Longest window of an average, samples.
+const MAX_WINDOW: usize = 64;
 
-/// An acceleration from a value with `FRAC` fractional bits; rounds to nearest and saturates.
-fn acceleration_from<const FRAC: u32>(value: i64) -> Acceleration {
-    let bits = shift_rounded(value, FRAC.wrapping_sub(Acceleration::FRAC_NBITS));
-    Acceleration::from_bits(saturate(bits))
+/// A window of 1 to [`MAX_WINDOW`] samples.
+fn checked_window(window: u32) -> Result<u32, RangeError> {
+    checked(
+        "estimator.window",
+        f64::from(window),
+        1.0,
+        MAX_WINDOW as f64,
+    )
+    .map(|_| window)
 }
 
 /// `value` / 2^`bits`, to nearest. `bits` is 1 to 62 and |value| stays below 2⁶².

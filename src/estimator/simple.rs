@@ -5,12 +5,9 @@
 //! All three sums are exact integers and each is divided once, so there is no drift and the outputs
 //! are right to half their own LSB (test against an f64 oracle).
 
-use super::{Estimate, Lags, steady_delta};
+use super::{Estimate, Lags, MAX_WINDOW, checked_window, steady_delta};
 use crate::capture::Observation;
-use crate::units::{Acceleration, Position, RangeError, Velocity, checked};
-
-/// Longest window, samples.
-pub const MAX_WINDOW: usize = 64;
+use crate::units::{Acceleration, Position, RangeError, Velocity};
 
 /// The window and what follows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,14 +20,9 @@ impl Config {
     /// A mean of `window` samples (the paper's optimum is 15).
     ///
     /// # Errors
-    /// [`RangeError`] unless 1 ≤ window ≤ [`MAX_WINDOW`].
+    /// [`RangeError`] unless 1 ≤ window ≤ 64.
     pub fn new(window: u32) -> Result<Self, RangeError> {
-        checked(
-            "estimator.window",
-            f64::from(window),
-            1.0,
-            MAX_WINDOW as f64,
-        )?;
+        let window = checked_window(window)?;
         let lag = (f64::from(window) - 1.0) / 2.0;
         Ok(Self {
             window: window.cast_signed(),
