@@ -2,7 +2,8 @@
 
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::controller::{Controller, FollowingError};
-use crate::estimator::{Estimate, Estimator};
+use crate::edges::EdgeReader;
+use crate::estimator::{Estimate, Estimator, Evidence};
 use crate::hal::Capture;
 use crate::output::{ActiveLimits, Output};
 use crate::params::AxisConfig;
@@ -47,6 +48,7 @@ pub struct Outputs {
 #[derive(Clone, Debug)]
 pub struct Axis {
     unwrapper: Unwrapper,
+    edges: EdgeReader,
     estimator: Estimator,
     trajectory: Trajectory,
     controller: Controller,
@@ -64,6 +66,7 @@ impl Axis {
     pub fn new(config: AxisConfig) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
+            edges: EdgeReader::new(config.edges),
             estimator: Estimator::new(config.estimator),
             trajectory: Trajectory::new(),
             controller: Controller::new(config.controller),
@@ -86,10 +89,16 @@ impl Axis {
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
+        let was_enabled = outputs.enabled;
         outputs.tick = tick;
         outputs.count = observation.count;
         outputs.enabled = inputs.enable;
-        outputs.estimate = self.estimator.update(&observation);
+        let command = was_enabled.then(|| self.output.command());
+        outputs.estimate = self.estimator.update(&Evidence {
+            observation: &observation,
+            edges: &self.edges,
+            command,
+        });
         outputs.setpoint = self.trajectory.step(tick);
         outputs.moving = self.trajectory.is_moving();
         let active = self.output.active_limits();
@@ -128,6 +137,7 @@ impl Axis {
     /// Takes a new configuration between two ticks. The output goes on without a step; another
     /// estimator starts as after a long motion at the velocity estimated last.
     pub fn reconfigure(&mut self, config: AxisConfig) {
+        self.edges = EdgeReader::new(config.edges);
         if config.estimator != self.config.estimator {
             self.estimator = Estimator::new(config.estimator);
             self.estimator.prime(self.outputs.estimate.velocity);

@@ -19,6 +19,20 @@ pub struct UnwrappedLatch {
     pub time: i64,
 }
 
+/// Times of the edges of a tick, as far as they tell something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeTimes<'a> {
+    /// No edge whose place is known: none at all, a reversal within the tick, or a count that is in doubt.
+    None,
+    /// The last edge alone.
+    Last {
+        /// Timer clocks before the sample.
+        age: u32,
+    },
+    /// All edges, as many as the count moved, oldest first in two parts.
+    All([&'a [u32]; 2]),
+}
+
 /// One capture, unwrapped: what an estimator sees of a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
@@ -51,6 +65,25 @@ impl<'a> Observation<'a> {
         self.capture
             .last_edge_at
             .map(|at| sampled_at.wrapping_sub(at))
+    }
+
+    /// What the edge times of this tick are good for.
+    ///
+    /// More times than counts are a reversal, whose edges cannot be told apart; fewer are edges whose time
+    /// was lost, and the last one stands at the new count all the same. After an illegal transition the
+    /// count itself is in doubt.
+    #[must_use]
+    pub fn edge_times(&self) -> EdgeTimes<'a> {
+        if self.edges_complete && self.delta != 0 {
+            return EdgeTimes::All(self.capture.edges);
+        }
+        let [older, newer] = self.capture.edges;
+        let reversed = older.len().wrapping_add(newer.len()) > self.delta.unsigned_abs() as usize;
+        if self.delta == 0 || reversed || self.capture.illegal != 0 {
+            return EdgeTimes::None;
+        }
+        self.since_last_edge()
+            .map_or(EdgeTimes::None, |age| EdgeTimes::Last { age })
     }
 
     /// Times of all edges of this tick as the hardware gave them, oldest first, in two parts.
@@ -165,10 +198,10 @@ impl Unwrapper {
         } = *observation.capture;
         let moved = observation.delta;
         observation.delta = moved.clamp(-MAX_DELTA, MAX_DELTA);
-        observation.edges_complete &= !overrun && illegal == 0;
+        let overspeed = observation.delta != moved;
+        observation.edges_complete &= !overrun && illegal == 0 && !overspeed;
 
         let health = &mut self.health;
-        let overspeed = observation.delta != moved;
         health.illegal = health.illegal.saturating_add(u32::from(illegal));
         health.overrun_ticks = health.overrun_ticks.saturating_add(u32::from(overrun));
         health.ambiguous_ticks = health.ambiguous_ticks.saturating_add(u32::from(ambiguous));

@@ -40,6 +40,7 @@
 pub mod axis;
 pub mod capture;
 pub mod controller;
+pub mod edges;
 pub mod estimator;
 pub mod hal;
 pub mod output;

@@ -3,11 +3,12 @@
 use core::fmt;
 
 use crate::controller::config::Gains;
+use crate::edges::EdgeScale;
 use crate::estimator::{Delay, EstimatorConfig};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
-use crate::units::{AxisScale, RangeError, TIMER_HZ, checked};
+use crate::units::{AxisScale, RangeError};
 use crate::{controller, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
@@ -18,7 +19,7 @@ pub const MAX_FEED_SHARE: f64 = 0.95;
 pub struct AxisParams {
     /// Control rate, Hz: 100 to 40 000.
     pub tick_hz: f64,
-    /// Clock of the edge timer, Hz: 1e6 to 250e6. Checked here; the estimators so far use counts alone.
+    /// Clock of the edge timer, Hz: 1e6 to 250e6.
     pub timer_hz: f64,
     /// What the axis is and how it may move.
     pub motion: MotionParams,
@@ -129,6 +130,8 @@ impl core::error::Error for ParamError {}
 /// the lags of the estimator beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
+    /// Clocks of the edge timer to ticks.
+    pub edges: EdgeScale,
     /// Estimator.
     pub estimator: EstimatorConfig,
     /// Control law.
@@ -145,12 +148,13 @@ impl AxisParams {
     /// # Errors
     /// [`ParamError`] naming the first parameter that is wrong, its value and the allowed range.
     pub fn validate(&self) -> Result<AxisConfig, ParamError> {
-        checked("timer_hz", self.timer_hz, TIMER_HZ.0, TIMER_HZ.1)?;
+        let edges = EdgeScale::new(self.tick_hz, self.timer_hz)?;
         // Before anything is converted: conversions have their own, more general names.
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         Ok(AxisConfig {
+            edges,
             estimator: self.estimator,
             limits: self.motion.limits(scale)?,
             controller: self

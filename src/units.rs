@@ -12,11 +12,12 @@
 //! | acceleration, d/tick² | [`Acceleration`] | ±128 | 6.0e-8 |
 //! | jerk, d/tick³ | [`Jerk`] | ±4 | 1.9e-9 |
 //! | lag, ticks | [`Lag`] | ±32 768 | 1.5e-5 |
+//! | variance of one of these, its unit² | [`Variance`] | 65 536 (σ 256) | 3.6e-15 (σ 6e-8) |
 //! | command, fraction of full | [`Command`] | ±2 (limited to ±1) | 9.3e-10 |
 
 use core::fmt;
 
-use fixed::types::{I2F30, I3F29, I8F24, I12F20, I16F16, I48F16};
+use fixed::types::{I2F30, I3F29, I8F24, I12F20, I16F16, I48F16, U16F48};
 
 /// Position in d.
 pub type Position = I48F16;
@@ -28,6 +29,8 @@ pub type Acceleration = I8F24;
 pub type Jerk = I3F29;
 /// Lag of an estimate behind the sampling instant, in ticks.
 pub type Lag = I16F16;
+/// Variance of a velocity, (d/tick)², or of an acceleration, (d/tick²)².
+pub type Variance = U16F48;
 /// Drive command in fractions of full command: ±1 is ±10 V.
 pub type Command = I2F30;
 

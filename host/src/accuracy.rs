@@ -1,12 +1,13 @@
 //! Estimators on prescribed motions: error against the truth, and lag by response.
 
-use leadscrew::capture::Unwrapper;
-use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
+use leadscrew::edges::EdgeScale;
+use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::units::RangeError;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene::{Motion, Scene};
 
+use crate::listening::Listening;
 use crate::statistics::Spread;
 use crate::truth::TruthTrack;
 
@@ -41,18 +42,19 @@ impl Trial {
     /// A parameter of the encoder out of range.
     pub fn observe(&self, config: EstimatorConfig) -> Result<Observed, RangeError> {
         let mut scene = Scene::new(self.motion, &self.encoder, self.tick_hz, 0.0, self.seed)?;
-        let mut unwrapper = Unwrapper::new();
-        let mut estimator = Estimator::new(config);
+        let scale = EdgeScale::new(self.tick_hz, self.encoder.encoder.timer_hz)?;
+        let mut listening = Listening::new(&[config], scale);
         let mut truth = TruthTrack::default();
         let mut estimates = Vec::new();
         let warm_up = config.warm_up_ticks();
         for tick in 0..warm_up + self.ticks {
             scene.step();
             truth.push(scene.truth());
-            let estimate = estimator.update(&unwrapper.unwrap(&scene.capture()));
-            if tick >= warm_up {
-                estimates.push(estimate);
-            }
+            listening.hear(&scene.capture(), None, |_, estimate| {
+                if tick >= warm_up {
+                    estimates.push(estimate);
+                }
+            });
         }
         Ok(Observed {
             estimates,

@@ -6,9 +6,8 @@ use std::io::Write;
 use comfy_table::{CellAlignment, Table, presets};
 use leadscrew::capture::{CaptureHealth, MAX_DELTA};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
+use leadscrew::units::Variance;
 use serde::Serialize;
-
-use crate::noise::{NoiseGain, QUANTISATION_SIGMA_D};
 
 /// Columns of every CSV, in order; further ones are only ever appended.
 pub const COLUMNS: [&str; 11] = [
@@ -140,30 +139,17 @@ pub fn figure_or_dash(figure: Option<f64>, decimals: usize) -> String {
 pub struct CsvReport<W: Write> {
     writer: csv::Writer<W>,
     tick_hz: f64,
-    sigma: NoiseGain,
 }
 
 impl<W: Write> CsvReport<W> {
-    /// Starts a report for an estimator; `further` names the columns after the shared ones.
-    ///
-    /// The columns `sigma_v` and `sigma_a` hold what the rounding to whole counts alone leaves (1/√12 d,
-    /// white); what else an encoder adds is not in them.
+    /// Starts a report; `further` names the columns after the shared ones.
     ///
     /// # Errors
     /// The writer's.
-    pub fn new(
-        writer: W,
-        tick_hz: f64,
-        config: EstimatorConfig,
-        further: &[&str],
-    ) -> csv::Result<Self> {
+    pub fn new(writer: W, tick_hz: f64, further: &[&str]) -> csv::Result<Self> {
         let mut writer = csv::Writer::from_writer(writer);
         writer.write_record(COLUMNS.iter().chain(further))?;
-        Ok(Self {
-            writer,
-            tick_hz,
-            sigma: NoiseGain::of(config),
-        })
+        Ok(Self { writer, tick_hz })
     }
 
     /// Writes a tick.
@@ -184,8 +170,8 @@ impl<W: Write> CsvReport<W> {
             estimate.lags.position.to_num(),
             estimate.lags.velocity.to_num(),
             estimate.lags.acceleration.to_num(),
-            self.sigma.velocity * QUANTISATION_SIGMA_D,
-            self.sigma.acceleration * QUANTISATION_SIGMA_D,
+            sigma(estimate.variances.velocity),
+            sigma(estimate.variances.acceleration),
         ];
         self.writer.write_field(tick.to_string())?;
         self.writer
@@ -204,6 +190,11 @@ impl<W: Write> CsvReport<W> {
     pub fn finish(mut self) -> std::io::Result<()> {
         self.writer.flush()
     }
+}
+
+/// 1σ of a variance.
+fn sigma(variance: Variance) -> f64 {
+    variance.to_num::<f64>().sqrt()
 }
 
 /// A value to nine decimals, without zeros at the end.

@@ -1,14 +1,15 @@
 //! A run of the simulated machine with every estimator listening.
 
 use leadscrew::axis::Outputs;
-use leadscrew::capture::{CaptureHealth, Unwrapper};
-use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
+use leadscrew::capture::CaptureHealth;
+use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::hal::Encoder;
 use leadscrew_hal_mock::arc::State;
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
+use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Simulation};
 use leadscrew_hal_mock::tachogenerator;
 
+use crate::listening::Listening;
 use crate::progress::Progress;
 use crate::statistics::Spread;
 use crate::truth::TruthTrack;
@@ -81,13 +82,19 @@ impl RunSpec {
     pub fn run(&self) -> Result<Run, ScenarioError> {
         let mut simulation =
             Simulation::prepare(&self.scenario, &self.machine, self.estimator, self.seed)?;
-        let mut listening = Listening::new(all_estimators());
+        let configs = all_estimators();
+        let mut listening = Listening::new(&configs, simulation.axis.config().edges);
+        let mut listeners: Vec<_> = configs.into_iter().map(Listener::new).collect();
         let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));
         let mut ticks = Vec::with_capacity(simulation.ticks() as usize);
         let mut truth = TruthTrack::default();
+        let mut told = None;
         while let Some(outputs) = simulation.step()? {
             let state = simulation.machine.truth();
-            listening.hear(&simulation.machine);
+            let command = told.replace(outputs.command).filter(|_| outputs.enabled);
+            listening.hear(&simulation.machine.capture(), command, |index, estimate| {
+                listeners[index].estimates.push(estimate);
+            });
             truth.push(state.shaft);
             let tachogenerator = simulation.machine.read_tachogenerator();
             ticks.push(Tick {
@@ -100,7 +107,7 @@ impl RunSpec {
         Ok(Run {
             ticks,
             truth,
-            listeners: listening.listeners,
+            listeners,
             health: simulation.axis.capture_health(),
             digest: simulation.digest(),
             tick_hz: self.scenario.tick_hz,
@@ -108,35 +115,11 @@ impl RunSpec {
     }
 }
 
-struct Listening {
-    unwrapper: Unwrapper,
-    estimators: Vec<Estimator>,
-    listeners: Vec<Listener>,
-}
-
-impl Listening {
-    fn new(configs: Vec<EstimatorConfig>) -> Self {
+impl Listener {
+    const fn new(config: EstimatorConfig) -> Self {
         Self {
-            unwrapper: Unwrapper::new(),
-            estimators: configs
-                .iter()
-                .map(|&config| Estimator::new(config))
-                .collect(),
-            listeners: configs
-                .into_iter()
-                .map(|config| Listener {
-                    config,
-                    estimates: Vec::new(),
-                })
-                .collect(),
-        }
-    }
-
-    fn hear(&mut self, machine: &Machine) {
-        let capture = machine.capture();
-        let observation = self.unwrapper.unwrap(&capture);
-        for (estimator, listener) in self.estimators.iter_mut().zip(&mut self.listeners) {
-            listener.estimates.push(estimator.update(&observation));
+            config,
+            estimates: Vec::new(),
         }
     }
 }

@@ -2,9 +2,8 @@
 //!
 //! Exact in fixed point; what it lacks is resolution: one discrete a tick.
 
-use super::{Estimate, Lags};
-use crate::capture::Observation;
-use crate::units::{Acceleration, Lag, Velocity};
+use super::{Delay, Estimate, Evidence, Lags, Variances};
+use crate::units::{Acceleration, Lag, Variance, Velocity};
 
 /// There is nothing to choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,8 +23,18 @@ impl Config {
         2
     }
 
-    pub(super) const fn sample_age_variance(&self) -> f64 {
-        0.0
+    /// Weights 1, −1 and 1, −2, 1: their squares add up to 2 and 6, see [`Variances::of_counts`].
+    const fn variances(&self) -> Variances {
+        const SIXTH: Variance = Variance::lit("0.166666666666666667");
+        const HALF: Variance = Variance::lit("0.5");
+        Variances {
+            velocity: SIXTH,
+            acceleration: HALF,
+        }
+    }
+
+    pub(super) fn delay(&self) -> Delay {
+        Delay::of_differenced(&self.lags(), 0.0)
     }
 }
 
@@ -47,8 +56,9 @@ impl Estimator {
         self.previous_delta = velocity.round().to_num();
     }
 
-    /// Takes a tick's observation. An acceleration beyond ±128 d/tick² saturates.
-    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+    /// Takes what a tick has to tell. An acceleration beyond ±128 d/tick² saturates.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let observation = evidence.observation;
         let delta = observation.delta;
         let change = delta.wrapping_sub(self.previous_delta);
         self.previous_delta = delta;
@@ -57,6 +67,7 @@ impl Estimator {
             velocity: Velocity::wrapping_from_num(delta),
             acceleration: Acceleration::saturating_from_num(change),
             lags: const { Config.lags() },
+            variances: const { Config.variances() },
         }
     }
 }

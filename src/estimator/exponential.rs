@@ -8,8 +8,7 @@
 //! adds: at the paper's α = 0.18 and 150 d/tick 7.8e-7 d and 2.8e-7 d/tick, at 2 047 d/tick 1.1e-5 d and
 //! 3.9e-6 d/tick.
 
-use super::{Estimate, Lags, estimate_from};
-use crate::capture::Observation;
+use super::{Delay, Estimate, Evidence, Lags, Quality, Variances, estimate_from};
 use crate::units::{RangeError, Velocity, checked};
 
 const STATE_FRAC: u32 = 32;
@@ -20,7 +19,7 @@ const ALPHA_FRAC: u32 = 31;
 pub struct Config {
     /// α in Q0.31.
     alpha: i32,
-    lags: Lags,
+    quality: Quality,
     warm_up_ticks: u32,
 }
 
@@ -31,28 +30,35 @@ impl Config {
     /// [`RangeError`] unless 0.001 ≤ α ≤ 0.999.
     pub fn new(alpha: f64) -> Result<Self, RangeError> {
         let alpha = checked("estimator.alpha", alpha, 0.001, 0.999)?;
+        // Of the weights α(1 − α)^k, differenced once and twice.
+        let once = 2.0 * alpha * alpha / (2.0 - alpha);
+        let twice = alpha * alpha * (1.0 + (1.0 + alpha) * (1.0 + alpha))
+            + libm::pow(alpha, 5.0) / (2.0 - alpha);
         Ok(Self {
             alpha: libm::round(libm::ldexp(alpha, 31)) as i32,
-            lags: Lags::of_differenced((1.0 - alpha) / alpha),
+            quality: Quality {
+                lags: Lags::of_differenced((1.0 - alpha) / alpha),
+                variances: Variances::of_counts(once, twice),
+            },
             warm_up_ticks: libm::ceil(libm::log(1e-6) / libm::log(1.0 - alpha)) as u32,
         })
     }
 
     pub(super) const fn lags(&self) -> Lags {
-        self.lags
+        self.quality.lags
     }
 
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         self.warm_up_ticks
     }
 
-    /// Of the geometric weights: (1 − α)/α².
-    pub(super) fn sample_age_variance(&self) -> f64 {
+    /// The variance of the geometric weights' age is (1 − α)/α².
+    pub(super) fn delay(&self) -> Delay {
         let alpha = libm::ldexp(
             f64::from(self.alpha),
             ALPHA_FRAC.cast_signed().wrapping_neg(),
         );
-        (1.0 - alpha) / (alpha * alpha)
+        Delay::of_differenced(&self.quality.lags, (1.0 - alpha) / (alpha * alpha))
     }
 }
 
@@ -88,15 +94,22 @@ impl Estimator {
         self.behind = (ahead as i64).wrapping_sub(self.velocity);
     }
 
-    /// Takes a tick's observation.
-    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+    /// Takes what a tick has to tell.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let observation = evidence.observation;
         let step = i64::from(observation.delta).wrapping_shl(STATE_FRAC);
         let ahead = self.behind.wrapping_add(step);
         let velocity = scale(ahead, self.config.alpha);
         let change = velocity.wrapping_sub(self.velocity);
         self.behind = ahead.wrapping_sub(velocity);
         self.velocity = velocity;
-        estimate_from::<STATE_FRAC>(observation, self.behind, velocity, change, self.config.lags)
+        estimate_from::<STATE_FRAC>(
+            observation,
+            self.behind,
+            velocity,
+            change,
+            &self.config.quality,
+        )
     }
 }
 

@@ -8,8 +8,10 @@
 //! σ = 6, N = 25 are right to half an LSB and, for motion up to 150 d/tick, 4.7e-6 d and 1.1e-6 d/tick; up to
 //! 2 047 d/tick 6.4e-5 d and 1.5e-5 d/tick.
 
-use super::{Estimate, Lags, MAX_WINDOW, checked_window, estimate_from, steady_delta};
-use crate::capture::Observation;
+use super::{
+    Delay, Estimate, Evidence, Lags, MAX_WINDOW, Quality, Variances, checked_window, estimate_from,
+    steady_delta,
+};
 use crate::units::{RangeError, Velocity, checked};
 
 const WEIGHT_FRAC: u32 = 30;
@@ -20,7 +22,7 @@ pub struct Config {
     /// α_k in Q0.30, newest first; zero beyond the window.
     weights: [i32; MAX_WINDOW],
     window: usize,
-    lags: Lags,
+    quality: Quality,
 }
 
 impl Config {
@@ -45,22 +47,36 @@ impl Config {
             *newest = newest.wrapping_add(missing);
         }
         let lag = (0..window).map(|age| age as f64 * bell(age) / total).sum();
+        let weight = |age: Option<usize>| {
+            age.filter(|age| *age < window)
+                .map_or(0.0, |age| bell(age) / total)
+        };
+        let squares = |of: &dyn Fn(usize) -> f64| -> f64 {
+            (0..window.wrapping_add(2))
+                .map(|age| of(age) * of(age))
+                .sum()
+        };
+        let once = |age: usize| weight(Some(age)) - weight(age.checked_sub(1));
+        let twice = |age: usize| once(age) - age.checked_sub(1).map_or(0.0, once);
         Ok(Self {
             weights,
             window,
-            lags: Lags::of_differenced(lag),
+            quality: Quality {
+                lags: Lags::of_differenced(lag),
+                variances: Variances::of_counts(squares(&once), squares(&twice)),
+            },
         })
     }
 
     pub(super) const fn lags(&self) -> Lags {
-        self.lags
+        self.quality.lags
     }
 
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         (self.window as u32).wrapping_add(2)
     }
 
-    pub(super) fn sample_age_variance(&self) -> f64 {
+    pub(super) fn delay(&self) -> Delay {
         let moment = |power: f64| -> f64 {
             let weighted = |(age, weight): (usize, &i32)| {
                 libm::pow(age as f64, power)
@@ -68,7 +84,7 @@ impl Config {
             };
             self.weights.iter().enumerate().map(weighted).sum()
         };
-        moment(2.0) - moment(1.0) * moment(1.0)
+        Delay::of_differenced(&self.quality.lags, moment(2.0) - moment(1.0) * moment(1.0))
     }
 }
 
@@ -116,15 +132,22 @@ impl Estimator {
         }
     }
 
-    /// Takes a tick's observation.
-    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+    /// Takes what a tick has to tell.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let observation = evidence.observation;
         self.push(observation.delta);
         let velocity = self.weighted_sum();
         let change = velocity.wrapping_sub(self.velocity);
         let step = i64::from(observation.delta).wrapping_shl(WEIGHT_FRAC);
         self.behind = self.behind.wrapping_add(step).wrapping_sub(velocity);
         self.velocity = velocity;
-        estimate_from::<WEIGHT_FRAC>(observation, self.behind, velocity, change, self.config.lags)
+        estimate_from::<WEIGHT_FRAC>(
+            observation,
+            self.behind,
+            velocity,
+            change,
+            &self.config.quality,
+        )
     }
 
     fn push(&mut self, delta: i32) {

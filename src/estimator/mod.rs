@@ -21,7 +21,20 @@ pub mod gaussian;
 pub mod simple;
 
 use crate::capture::Observation;
-use crate::units::{Acceleration, Lag, Position, RangeError, Velocity, checked};
+use crate::edges::EdgeReader;
+use crate::units::{Acceleration, Command, Lag, Position, RangeError, Variance, Velocity, checked};
+
+/// What there is to estimate from in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    /// Counts and times.
+    pub observation: &'a Observation<'a>,
+    /// Reads the edges, for those that use them.
+    pub edges: &'a EdgeReader,
+    /// What the drive was told for the tick just past; `None` where that is not known, as in a replay, or
+    /// the drive was off.
+    pub command: Option<Command>,
+}
 
 /// What an estimator says after a tick; each quantity holds for the instant `lag` ticks before the
 /// sample.
@@ -35,6 +48,28 @@ pub struct Estimate {
     pub acceleration: Acceleration,
     /// How far each of the three lies back.
     pub lags: Lags,
+    /// How uncertain they are.
+    pub variances: Variances,
+}
+
+/// Squares of the standard deviations (1σ) of an estimate. The root is taken by whoever shows it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Variances {
+    /// Of the velocity, (d/tick)².
+    pub velocity: Variance,
+    /// Of the acceleration, (d/tick²)².
+    pub acceleration: Variance,
+}
+
+impl Variances {
+    /// Of estimates that weigh counts with weights whose squares add up to `velocity` and `acceleration`: the
+    /// rounding to whole counts, 1/12 d², taken for white.
+    fn of_counts(velocity: f64, acceleration: f64) -> Self {
+        Self {
+            velocity: Variance::saturating_from_num(velocity / 12.0),
+            acceleration: Variance::saturating_from_num(acceleration / 12.0),
+        }
+    }
 }
 
 /// Lags of an estimate in ticks, at low frequency: lag_x at constant velocity, lag_v at constant
@@ -72,6 +107,18 @@ pub struct Delay {
     pub acceleration: f64,
 }
 
+impl Delay {
+    /// Of differences of a smoothed count whose samples' ages have the variance `sample_age_variance`: a
+    /// difference is the mean velocity of a tick, which adds 1/12 to it.
+    fn of_differenced(lags: &Lags, sample_age_variance: f64) -> Self {
+        let pure = Self::from(lags);
+        Self {
+            velocity_squared: pure.velocity_squared + sample_age_variance + 1.0 / 12.0,
+            ..pure
+        }
+    }
+}
+
 impl From<&Lags> for Delay {
     /// A pure delay, which has no spread.
     fn from(lags: &Lags) -> Self {
@@ -102,7 +149,7 @@ fn estimate_from<const FRAC: u32>(
     behind: i64,
     velocity: i64,
     change: i64,
-    lags: Lags,
+    quality: &Quality,
 ) -> Estimate {
     let rounded = |value: i64, frac: u32| shift_rounded(value, FRAC.wrapping_sub(frac));
     let behind = rounded(behind, Position::FRAC_NBITS);
@@ -110,8 +157,16 @@ fn estimate_from<const FRAC: u32>(
         position: Position::from_bits(observation.position().to_bits().wrapping_sub(behind)),
         velocity: Velocity::from_bits(rounded(velocity, Velocity::FRAC_NBITS) as i32),
         acceleration: Acceleration::from_bits(saturate(rounded(change, Acceleration::FRAC_NBITS))),
-        lags,
+        lags: quality.lags,
+        variances: quality.variances,
     }
+}
+
+/// What is known beforehand of an estimator that weighs counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Quality {
+    lags: Lags,
+    variances: Variances,
 }
 
 /// Longest window of an average, samples.
@@ -184,14 +239,10 @@ macro_rules! estimators {
                 match self { $(Self::$variant(config) => config.lags(),)* }
             }
 
-            /// How the estimate lies behind, with the spread of its age. A difference is the mean velocity of
-            /// a tick, which adds 1/12 to the variance of the samples' ages.
+            /// How the estimate lies behind, with the spread of its age.
             #[must_use]
             pub fn delay(&self) -> Delay {
-                let variance = match self { $(Self::$variant(config) => config.sample_age_variance(),)* };
-                let delay = Delay::from(&self.lags());
-                let spread = variance + 1.0 / 12.0;
-                Delay { velocity_squared: delay.velocity * delay.velocity + spread, ..delay }
+                match self { $(Self::$variant(config) => config.delay(),)* }
             }
 
             /// Ticks after which the first sample's influence is below 1e-6.
@@ -222,9 +273,9 @@ macro_rules! estimators {
                 match self { $(Self::$variant(estimator) => estimator.prime(velocity),)* }
             }
 
-            /// Takes a tick's observation.
-            pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
-                match self { $(Self::$variant(estimator) => estimator.update(observation),)* }
+            /// Takes what a tick has to tell.
+            pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+                match self { $(Self::$variant(estimator) => estimator.update(evidence),)* }
             }
         }
     };

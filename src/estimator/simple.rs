@@ -5,15 +5,16 @@
 //! All three sums are exact integers and each is divided once, so there is no drift and the outputs
 //! are right to half their own LSB (test against an f64 oracle).
 
-use super::{Estimate, Lags, MAX_WINDOW, checked_window, steady_delta};
-use crate::capture::Observation;
+use super::{
+    Delay, Estimate, Evidence, Lags, MAX_WINDOW, Quality, Variances, checked_window, steady_delta,
+};
 use crate::units::{Acceleration, Position, RangeError, Velocity};
 
 /// The window and what follows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     window: i32,
-    lags: Lags,
+    quality: Quality,
 }
 
 impl Config {
@@ -23,25 +24,33 @@ impl Config {
     /// [`RangeError`] unless 1 ≤ window ≤ 64.
     pub fn new(window: u32) -> Result<Self, RangeError> {
         let window = checked_window(window)?;
-        let lag = (f64::from(window) - 1.0) / 2.0;
+        let samples = f64::from(window);
+        // Weights ±1/N at both ends of the window; differenced again, twice as many, which meet if N is 1.
+        let twice = if window == 1 { 6.0 } else { 4.0 };
         Ok(Self {
             window: window.cast_signed(),
-            lags: Lags::of_differenced(lag),
+            quality: Quality {
+                lags: Lags::of_differenced((samples - 1.0) / 2.0),
+                variances: Variances::of_counts(
+                    2.0 / (samples * samples),
+                    twice / (samples * samples),
+                ),
+            },
         })
     }
 
     pub(super) const fn lags(&self) -> Lags {
-        self.lags
+        self.quality.lags
     }
 
     pub(super) const fn warm_up_ticks(&self) -> u32 {
         self.window.cast_unsigned().wrapping_add(2)
     }
 
-    /// Of equal weights: (N² − 1)/12.
-    pub(super) fn sample_age_variance(&self) -> f64 {
+    /// The variance of the samples' age is (N² − 1)/12.
+    pub(super) fn delay(&self) -> Delay {
         let window = f64::from(self.window);
-        (window * window - 1.0) / 12.0
+        Delay::of_differenced(&self.quality.lags, (window * window - 1.0) / 12.0)
     }
 }
 
@@ -85,8 +94,9 @@ impl Estimator {
         }
     }
 
-    /// Takes a tick's observation. An acceleration beyond ±128 d/tick² saturates.
-    pub fn update(&mut self, observation: &Observation<'_>) -> Estimate {
+    /// Takes what a tick has to tell. An acceleration beyond ±128 d/tick² saturates.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let observation = evidence.observation;
         let window = self.config.window;
         let newest = observation.delta;
         let oldest = self.exchange(newest);
@@ -108,7 +118,8 @@ impl Estimator {
             acceleration: Acceleration::from_bits(super::saturate(divide::<
                 { Acceleration::FRAC_NBITS },
             >(change, window))),
-            lags: self.config.lags,
+            lags: self.config.quality.lags,
+            variances: self.config.quality.variances,
         }
     }
 

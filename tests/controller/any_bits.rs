@@ -2,7 +2,7 @@
 
 use leadscrew::controller::config::Gains;
 use leadscrew::controller::{Config, Controller};
-use leadscrew::estimator::{Estimate, Lags};
+use leadscrew::estimator::{Estimate, Lags, Variances};
 use leadscrew::output::ActiveLimits;
 use leadscrew::setpoint::Setpoint;
 use leadscrew::units::{Acceleration, Command, Jerk, Lag, Position, Velocity};
@@ -92,6 +92,7 @@ fn any_estimate() -> impl Strategy<Value = Estimate> {
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::from_bits(acceleration),
             lags,
+            variances: Variances::default(),
         },
     )
 }

@@ -3,6 +3,7 @@
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
+use leadscrew::edges::EdgeScale;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Capture;
 use leadscrew::output;
@@ -16,6 +17,7 @@ use crate::signals::config as controller_config;
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
     AxisConfig {
+        edges: EdgeScale::new(1000.0, 84e6).unwrap(),
         estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
             .unwrap()
             .unwrap(),

@@ -1,13 +1,27 @@
 //! The estimators: against a floating-point oracle, by response, and on the scenes of the papers.
 
+mod impulse;
 mod oracle;
 mod papers;
 mod response;
 
+use leadscrew::edges::EdgeScale;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene::Motion;
 use leadscrew_host::accuracy::{Observed, Trial};
+
+/// The timer of the reference machine at 1 kHz.
+fn scale() -> EdgeScale {
+    EdgeScale::new(1000.0, 84e6).unwrap()
+}
+
+/// The estimators that use counts alone, with their default parameters.
+fn counting_estimators() -> Vec<EstimatorConfig> {
+    ["difference", "exponential", "simple", "gaussian"]
+        .map(|name| EstimatorConfig::by_name(name).unwrap().unwrap())
+        .to_vec()
+}
 
 /// What an estimator says of a motion, seed 1, 1 kHz.
 fn observe(motion: Motion, encoder: EncoderModel, ticks: u32, config: EstimatorConfig) -> Observed {

@@ -1,11 +1,15 @@
 //! Fixed point against the papers' formulas in `f64`.
 
 use leadscrew::capture::Unwrapper;
-use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, exponential, gaussian, simple};
+use leadscrew::edges::EdgeReader;
+use leadscrew::estimator::{
+    Estimate, Estimator, EstimatorConfig, Evidence, exponential, gaussian, simple,
+};
 use leadscrew::hal::Capture;
 use leadscrew::units::Velocity;
-use leadscrew_host::simulation::all_estimators;
 use proptest::prelude::*;
+
+use crate::{counting_estimators, scale};
 
 /// Smoothed positions by the formulas of P2 in `f64`, for a shaft that has always stood at the first count.
 fn smoothed(config: &EstimatorConfig, counts: &[i64]) -> Vec<f64> {
@@ -26,6 +30,15 @@ fn smoothed(config: &EstimatorConfig, counts: &[i64]) -> Vec<f64> {
         .collect()
 }
 
+/// What an estimator says of a capture.
+fn update(estimator: &mut Estimator, unwrapper: &mut Unwrapper, capture: &Capture<'_>) -> Estimate {
+    estimator.update(&Evidence {
+        observation: &unwrapper.unwrap(capture),
+        edges: &EdgeReader::new(scale()),
+        command: None,
+    })
+}
+
 fn estimates(config: EstimatorConfig, counts: &[i64]) -> Vec<Estimate> {
     let mut unwrapper = Unwrapper::new();
     let mut estimator = Estimator::new(config);
@@ -35,7 +48,7 @@ fn estimates(config: EstimatorConfig, counts: &[i64]) -> Vec<Estimate> {
     };
     counts
         .iter()
-        .map(|&count| estimator.update(&unwrapper.unwrap(&capture(count))))
+        .map(|&count| update(&mut estimator, &mut unwrapper, &capture(count)))
         .collect()
 }
 
@@ -67,7 +80,7 @@ proptest! {
         let counts: Vec<i64> = std::iter::once(start)
             .chain(deltas.iter().scan(start, |count, delta| { *count += delta; Some(*count) }))
             .collect();
-        for config in all_estimators() {
+        for config in counting_estimators() {
             let oracle = smoothed(&config, &counts);
             let mut previous_velocity = 0.0;
             for (index, estimate) in estimates(config, &counts).iter().enumerate() {
@@ -96,7 +109,7 @@ proptest! {
             let steps = deltas.iter().scan(start, |count, delta| { *count += sign * delta; Some(*count) });
             std::iter::once(start).chain(steps).collect()
         };
-        for config in all_estimators() {
+        for config in counting_estimators() {
             let here = estimates(config, &walk(0, 1));
             let there = estimates(config, &walk(shift, 1));
             let mirrored = estimates(config, &walk(0, -1));
@@ -114,7 +127,7 @@ proptest! {
 
 #[test]
 fn the_first_sample_is_rest_wherever_it_is() {
-    for config in all_estimators() {
+    for config in counting_estimators() {
         let first = estimates(config, &[2_000_000_000, 2_000_000_000])[1];
         assert_eq!(
             first.position.to_num::<f64>(),
@@ -134,7 +147,7 @@ fn the_first_sample_is_rest_wherever_it_is() {
 #[test]
 fn a_primed_estimator_goes_on_as_if_it_had_always_been_there() {
     let velocity = Velocity::from_num(149.7);
-    for config in all_estimators() {
+    for config in counting_estimators() {
         let mut unwrapper = Unwrapper::new();
         let mut estimator = Estimator::new(config);
         unwrapper.unwrap(&Capture::default());
@@ -146,7 +159,7 @@ fn a_primed_estimator_goes_on_as_if_it_had_always_been_there() {
                 count,
                 ..Capture::default()
             };
-            let estimate = estimator.update(&unwrapper.unwrap(&capture));
+            let estimate = update(&mut estimator, &mut unwrapper, &capture);
             // What is left is the rounding of the count: up to a discrete of a plain difference.
             let name = config.name();
             assert!(
@@ -168,16 +181,17 @@ fn a_primed_estimator_goes_on_as_if_it_had_always_been_there() {
 
 #[test]
 fn no_state_drifts_in_a_million_ticks() {
-    for config in all_estimators() {
+    for config in counting_estimators() {
         let mut unwrapper = Unwrapper::new();
         let mut estimator = Estimator::new(config);
         let mut count = 0_u32;
         let mut step = |delta: i32| {
             count = count.wrapping_add_signed(delta);
-            estimator.update(&unwrapper.unwrap(&Capture {
+            let capture = Capture {
                 count,
                 ..Capture::default()
-            }))
+            };
+            update(&mut estimator, &mut unwrapper, &capture)
         };
         for tick in 0..1_000_000 {
             step(if tick % 7 < 3 { 1999 } else { -1499 });

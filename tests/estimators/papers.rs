@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
+use crate::impulse::NoiseGain;
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew_hal_mock::encoder::{EncoderModel, EncoderParams};
 use leadscrew_hal_mock::scene::Motion;
-use leadscrew_host::noise::NoiseGain;
 use leadscrew_host::simulation::all_estimators;
 
 use crate::observe;

@@ -3,15 +3,14 @@
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene::Motion;
-use leadscrew_host::noise::NoiseGain;
-use leadscrew_host::simulation::all_estimators;
 
-use crate::observe;
+use crate::impulse::NoiseGain;
+use crate::{counting_estimators, observe};
 
 #[test]
 fn the_velocity_under_constant_jerk_is_that_of_the_stated_delay() {
     const JERK: f64 = 0.05;
-    for config in all_estimators() {
+    for config in counting_estimators() {
         let delay = config.delay();
         let seen = observe(
             Motion::Jerk { jerk: JERK },
@@ -33,7 +32,7 @@ fn the_velocity_under_constant_jerk_is_that_of_the_stated_delay() {
 #[test]
 fn stated_lags_are_those_of_the_response() {
     const JERK: f64 = 0.02;
-    for config in all_estimators() {
+    for config in counting_estimators() {
         let ideal = EncoderModel::ideal();
         let lags = config.lags();
         let steady = observe(Motion::Steady { velocity: 50.3 }, ideal, 1000, config);

@@ -5,8 +5,9 @@ mod report;
 use std::fmt;
 use std::path::Path;
 
-use leadscrew::capture::{CaptureHealth, Unwrapper};
-use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig};
+use leadscrew::capture::CaptureHealth;
+use leadscrew::edges::EdgeScale;
+use leadscrew::estimator::{Estimate, EstimatorConfig};
 
 use super::{
     MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
@@ -14,6 +15,7 @@ use super::{
 use crate::cli::ReplayArgs;
 use crate::error::CommandError;
 use crate::figures::{self, acceleration_points, estimator_series, panel, velocity_points};
+use crate::listening::Listening;
 use crate::plot::Figure;
 use crate::progress::Progress;
 use crate::recording::{self, ChannelSelection, Recording};
@@ -46,13 +48,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
         let _reading = Progress::endless("reading");
         recording::read(&args.file, &channels, args.samplerate)?
     };
-    let replay = Replay::of(&recording, tick_hz, &configs).map_err(|TooLong { ticks }| {
-        CommandError::Data(format!(
-            "{}: lasts for {ticks} ticks at {tick_hz} Hz, more than the {MAX_TICKS} that are kept in memory: \
-             lower --tick-hz or export a shorter range",
-            args.file.display()
-        ))
-    })?;
+    let replay = Replay::of(&args.file, &recording, tick_hz, &configs)?;
 
     if let Some(path) = &args.output.csv {
         replay.write_csv(path)?;
@@ -81,9 +77,13 @@ struct Replay {
     tracks: Vec<Track>,
 }
 
-/// A recording that is too long to be kept.
-struct TooLong {
-    ticks: u64,
+/// The error of a recording that is too long to be kept.
+fn too_long(file: &Path, ticks: u64, tick_hz: f64) -> CommandError {
+    CommandError::Data(format!(
+        "{}: lasts for {ticks} ticks at {tick_hz} Hz, more than the {MAX_TICKS} that are kept in memory: \
+         lower --tick-hz or export a shorter range",
+        file.display()
+    ))
 }
 
 /// The estimates of one estimator.
@@ -94,21 +94,20 @@ struct Track {
 
 impl Replay {
     fn of(
+        file: &Path,
         recording: &Recording,
         tick_hz: f64,
         configs: &[EstimatorConfig],
-    ) -> Result<Self, TooLong> {
+    ) -> Result<Self, CommandError> {
         let mut sampler = Sampler::new(recording, tick_hz);
         let ticks = sampler.ticks();
         if ticks > MAX_TICKS {
-            return Err(TooLong { ticks });
+            return Err(too_long(file, ticks, tick_hz));
         }
+        let scale = EdgeScale::new(tick_hz, sampler.timer_hz() as f64)
+            .map_err(|error| CommandError::Usage(error.to_string()))?;
         let mut progress = Progress::new("replaying", ticks);
-        let mut unwrapper = Unwrapper::new();
-        let mut estimators: Vec<_> = configs
-            .iter()
-            .map(|&config| Estimator::new(config))
-            .collect();
+        let mut listening = Listening::new(configs, scale);
         let track = |&config: &EstimatorConfig| Track {
             config,
             estimates: Vec::new(),
@@ -116,17 +115,16 @@ impl Replay {
         let mut tracks: Vec<_> = configs.iter().map(track).collect();
         let mut counts = Vec::new();
         while let Some(capture) = sampler.next_capture() {
-            let observation = unwrapper.unwrap(&capture);
-            counts.push(observation.count);
-            for (estimator, track) in estimators.iter_mut().zip(&mut tracks) {
-                track.estimates.push(estimator.update(&observation));
-            }
+            let count = listening.hear(&capture, None, |index, estimate| {
+                tracks[index].estimates.push(estimate);
+            });
+            counts.push(count);
             progress.step();
         }
         Ok(Self {
             tick_hz,
             totals: sampler.totals(),
-            health: unwrapper.health(),
+            health: listening.health(),
             counts,
             tracks,
         })
@@ -141,7 +139,7 @@ impl Replay {
             return Ok(());
         };
         write_file(path, |file| {
-            let mut report = CsvReport::new(file, self.tick_hz, track.config, &[])?;
+            let mut report = CsvReport::new(file, self.tick_hz, &[])?;
             let mut progress = Progress::new("writing", self.counts.len() as u64);
             for (tick, (estimate, count)) in track.estimates.iter().zip(&self.counts).enumerate() {
                 progress.step();

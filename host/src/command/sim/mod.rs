@@ -55,7 +55,7 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
         .run()
         .map_err(|error| blame_option(args, &spec.machine.drive, error))?;
     if let Some(path) = &args.output.csv {
-        write_csv(path, &spec, &run)?;
+        write_csv(path, &run)?;
     }
     if let Some(path) = &args.output.plot {
         let _drawing = Progress::endless("drawing");
@@ -150,9 +150,9 @@ fn untunable(args: &SimArgs, drive: &DriveParams, range: &RangeError) -> Command
     ))
 }
 
-fn write_csv(path: &Path, spec: &RunSpec, run: &Run) -> Result<(), CommandError> {
+fn write_csv(path: &Path, run: &Run) -> Result<(), CommandError> {
     write_file(path, |file| {
-        let mut report = CsvReport::new(file, run.tick_hz, spec.estimator, &FURTHER_COLUMNS)?;
+        let mut report = CsvReport::new(file, run.tick_hz, &FURTHER_COLUMNS)?;
         let mut progress = Progress::new("writing", run.ticks.len() as u64);
         for (index, tick) in run.ticks.iter().enumerate() {
             progress.step();

@@ -3,7 +3,8 @@
 use board_mps2_an386::instructions::Counter;
 use leadscrew::capture::Unwrapper;
 use leadscrew::controller::Controller;
-use leadscrew::estimator::{Estimator, EstimatorConfig};
+use leadscrew::edges::EdgeReader;
+use leadscrew::estimator::{Estimator, EstimatorConfig, Evidence};
 use leadscrew::hal::Capture;
 use leadscrew::output::Output;
 use leadscrew::params::AxisConfig;
@@ -18,6 +19,7 @@ pub const ESTIMATORS: [&str; 4] = ["difference", "exponential", "simple", "gauss
 /// One stage after the other.
 pub struct Staged {
     unwrapper: Unwrapper,
+    edges: EdgeReader,
     estimators: [Estimator; 4],
     trajectory: Trajectory,
     controller: Controller,
@@ -65,6 +67,7 @@ impl Staged {
     pub fn new(config: &AxisConfig, estimators: [EstimatorConfig; 4]) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
+            edges: EdgeReader::new(config.edges),
             estimators: estimators.map(Estimator::new),
             trajectory: Trajectory::new(),
             controller: Controller::new(config.controller),
@@ -91,6 +94,11 @@ impl Staged {
         let Some(observation) = observation else {
             return;
         };
+        let evidence = Evidence {
+            observation: &observation,
+            edges: &self.edges,
+            command: Some(self.output.command()),
+        };
         let mut estimates = [None; 4];
         let mut estimator_counts = [0; 4];
         for ((estimator, estimate), count) in self
@@ -99,7 +107,7 @@ impl Staged {
             .zip(&mut estimates)
             .zip(&mut estimator_counts)
         {
-            *count = counter.count(|| *estimate = Some(estimator.update(&observation)));
+            *count = counter.count(|| *estimate = Some(estimator.update(&evidence)));
         }
         let [_, Some(estimate), ..] = estimates else {
             return;

@@ -1,0 +1,53 @@
+//! Estimators that only listen: capture by capture, all on the same evidence.
+
+use leadscrew::capture::{CaptureHealth, Unwrapper};
+use leadscrew::edges::{EdgeReader, EdgeScale};
+use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, Evidence};
+use leadscrew::hal::Capture;
+use leadscrew::units::Command;
+
+/// Estimators on one encoder.
+#[derive(Clone, Debug)]
+pub struct Listening {
+    unwrapper: Unwrapper,
+    edges: EdgeReader,
+    estimators: Vec<Estimator>,
+}
+
+impl Listening {
+    /// Estimators of `configs` behind an edge timer of `scale`.
+    #[must_use]
+    pub fn new(configs: &[EstimatorConfig], scale: EdgeScale) -> Self {
+        Self {
+            unwrapper: Unwrapper::new(),
+            edges: EdgeReader::new(scale),
+            estimators: configs.iter().copied().map(Estimator::new).collect(),
+        }
+    }
+
+    /// Takes a capture and hands every estimate to `take`, in the order of the configurations; returns the
+    /// count. `command` is what the drive was told for the tick just past, where that is known.
+    pub fn hear(
+        &mut self,
+        capture: &Capture<'_>,
+        command: Option<Command>,
+        mut take: impl FnMut(usize, Estimate),
+    ) -> i64 {
+        let observation = self.unwrapper.unwrap(capture);
+        let evidence = Evidence {
+            observation: &observation,
+            edges: &self.edges,
+            command,
+        };
+        for (index, estimator) in self.estimators.iter_mut().enumerate() {
+            take(index, estimator.update(&evidence));
+        }
+        observation.count
+    }
+
+    /// What went wrong at the encoder so far.
+    #[must_use]
+    pub const fn health(&self) -> CaptureHealth {
+        self.unwrapper.health()
+    }
+}

@@ -1,0 +1,179 @@
+//! What the edges of a tick tell: where the shaft was, and when.
+//!
+//! An edge is worth more than a count: at its instant the shaft was *at* a boundary, not somewhere in a
+//! discrete. Where every edge of a tick was captured, their mean place and mean time make one sample,
+//! right to the noise of an edge over √n; where the hardware keeps one stamp, the last edge is the
+//! sample. A tick whose edges do not explain its count (a reversal within it, edges lost) gives what is
+//! certain: the last edge if the count moved and the direction is known, else nothing.
+
+use crate::capture::{EdgeTimes, Observation};
+use crate::units::{Position, RangeError, TICK_HZ, TIMER_HZ, checked};
+
+/// A span of time within some ticks of now, in ticks: 3.7e-9 fine; spans of [`MAX_SPAN_TICKS`] and more
+/// are given as just that.
+pub type Span = fixed::types::U4F28;
+
+/// Longest [`Span`], ticks.
+pub const MAX_SPAN_TICKS: u32 = 8;
+
+/// A place of the shaft and the time at which it was there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeSample {
+    /// Place, d: the mean boundary that the edges stand for.
+    pub position: Position,
+    /// How long before the sampling instant, ticks.
+    pub age: Span,
+    /// Edges that it is the mean of, 1 to 2 047.
+    pub edges: u32,
+}
+
+/// Ticks in a clock of the edge timer.
+///
+/// A span is counted in parts of a clock, 2^`part_bits` of them, so that a tick has 2²⁸ to 2²⁹ parts; one
+/// 32 × 32-bit product then gives ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeScale {
+    part_bits: u32,
+    /// 2⁶⁰ over the parts of a tick: right to 2⁻³².
+    ticks_per_part: u32,
+    /// Clocks in [`MAX_SPAN_TICKS`].
+    max_clocks: u32,
+}
+
+impl EdgeScale {
+    /// The scale of a timer of `timer_hz` at a control rate of `tick_hz`.
+    ///
+    /// # Errors
+    /// [`RangeError`] for a rate outside 100 Hz to 40 kHz or a clock outside 1 to 250 MHz.
+    pub fn new(tick_hz: f64, timer_hz: f64) -> Result<Self, RangeError> {
+        let tick_hz = checked("tick_hz", tick_hz, TICK_HZ.0, TICK_HZ.1)?;
+        let timer_hz = checked("timer_hz", timer_hz, TIMER_HZ.0, TIMER_HZ.1)?;
+        let clocks_per_tick = timer_hz / tick_hz;
+        let whole_bits = (clocks_per_tick as u32).ilog2();
+        let part_bits = 28_u32.wrapping_sub(whole_bits);
+        let parts_per_tick = libm::ldexp(clocks_per_tick, part_bits.cast_signed());
+        Ok(Self {
+            part_bits,
+            ticks_per_part: libm::round(libm::ldexp(1.0, 60) / parts_per_tick) as u32,
+            max_clocks: (clocks_per_tick * f64::from(MAX_SPAN_TICKS) * (1.0 - 1e-9)) as u32,
+        })
+    }
+
+    /// A span of `clocks`.
+    #[must_use]
+    pub const fn span(self, clocks: u32) -> Span {
+        if clocks >= self.max_clocks {
+            return LONGEST;
+        }
+        self.span_of_parts(clocks.wrapping_shl(self.part_bits))
+    }
+
+    /// The mean of `count` spans that add up to `clocks`; `count` is 1 to 2 047.
+    fn mean_span(self, clocks: u64, count: u32) -> Span {
+        // Beyond 32 bits the mean is so large that what is cut off does not matter.
+        let (clocks, coarse) = match u32::try_from(clocks) {
+            Ok(clocks) => (clocks, 0),
+            Err(_) => (clocks.wrapping_shr(COARSE_BITS) as u32, COARSE_BITS),
+        };
+        let whole = clocks.checked_div(count).unwrap_or(0);
+        if whole >= self.max_clocks.wrapping_shr(coarse) {
+            return LONGEST;
+        }
+        let rest = clocks.wrapping_sub(whole.wrapping_mul(count));
+        let fine_bits = if self.part_bits < REST_BITS {
+            self.part_bits
+        } else {
+            REST_BITS
+        };
+        let fraction = rest
+            .wrapping_shl(fine_bits)
+            .checked_div(count)
+            .unwrap_or(0)
+            .wrapping_shl(self.part_bits.wrapping_sub(fine_bits));
+        let parts = whole.wrapping_shl(self.part_bits).wrapping_add(fraction);
+        self.span_of_parts(parts.wrapping_shl(coarse))
+    }
+
+    const fn span_of_parts(self, parts: u32) -> Span {
+        let product = (parts as u64).wrapping_mul(self.ticks_per_part as u64);
+        Span::from_bits(product.wrapping_shr(32) as u32)
+    }
+}
+
+const LONGEST: Span = Span::from_bits(MAX_SPAN_TICKS << Span::FRAC_NBITS);
+/// Clocks are cut by so many bits where their sum needs more than 32.
+const COARSE_BITS: u32 = 8;
+/// A rest of at most 2 047 may be shifted by so much.
+const REST_BITS: u32 = 20;
+
+/// Reads the edges of each tick.
+#[derive(Clone, Debug)]
+pub struct EdgeReader {
+    scale: EdgeScale,
+}
+
+impl EdgeReader {
+    /// A reader for the timer of `scale`.
+    #[must_use]
+    pub const fn new(scale: EdgeScale) -> Self {
+        Self { scale }
+    }
+
+    /// Time from the previous sampling instant to this one.
+    #[must_use]
+    pub const fn elapsed(&self, observation: &Observation<'_>) -> Span {
+        self.scale.span(observation.elapsed)
+    }
+
+    /// The sample that the edges of the tick make; `None` without an edge, or where they do not tell.
+    #[must_use]
+    pub fn sample(&self, observation: &Observation<'_>) -> Option<EdgeSample> {
+        match observation.edge_times() {
+            EdgeTimes::None => None,
+            EdgeTimes::Last { age } => Some(self.last(observation, age)),
+            EdgeTimes::All(times) => Some(self.mean(observation, times)),
+        }
+    }
+
+    /// The last edge: boundary `count` when going forward, the one above when going backward.
+    fn last(&self, observation: &Observation<'_>, age: u32) -> EdgeSample {
+        let above = i64::from(observation.delta < 0);
+        let boundary = observation.count.wrapping_add(above);
+        EdgeSample {
+            position: Position::from_bits(boundary.wrapping_shl(Position::FRAC_NBITS)),
+            age: self.scale.span(age),
+            edges: 1,
+        }
+    }
+
+    /// The mean of all edges: from count c₀ to c₁ the boundaries passed are the |c₁ − c₀| ones between,
+    /// with the mean (c₀ + c₁ + 1)/2 in either direction.
+    fn mean(&self, observation: &Observation<'_>, times: [&[u32]; 2]) -> EdgeSample {
+        let edges = observation.delta.unsigned_abs();
+        let doubled = observation
+            .count
+            .wrapping_mul(2)
+            .wrapping_sub(i64::from(observation.delta))
+            .wrapping_add(1);
+        let [older, newer] = times.map(|times| sum_of_ages(observation.sampled_at as u32, times));
+        EdgeSample {
+            position: Position::from_bits(doubled.wrapping_shl(Position::FRAC_NBITS - 1)),
+            age: self.scale.mean_span(older.wrapping_add(newer), edges),
+            edges,
+        }
+    }
+}
+
+/// Ages below [`MAX_SPAN_TICKS`] of so many edges add up in 32 bits at every clock and rate.
+const CHUNK: usize = 128;
+
+/// How long the edges at `times` lie before `now`, added up, clocks.
+fn sum_of_ages(now: u32, times: &[u32]) -> u64 {
+    times
+        .chunks(CHUNK)
+        .map(|times| {
+            let sum = times.iter().copied().fold(0, u32::wrapping_add);
+            now.wrapping_mul(times.len() as u32).wrapping_sub(sum)
+        })
+        .fold(0, |total, sum| total.wrapping_add(u64::from(sum)))
+}
