@@ -7,6 +7,7 @@
 //! certain: the last edge if the count moved and the direction is known, else nothing.
 
 use crate::capture::{EdgeTimes, Observation};
+use crate::uncertainty::{EdgeErrors, EdgeNoise};
 use crate::units::{Position, RangeError, TICK_HZ, TIMER_HZ, checked};
 
 /// A span of time within some ticks of now, in ticks: 3.7e-9 fine; spans of [`MAX_SPAN_TICKS`] and more
@@ -25,6 +26,29 @@ pub struct EdgeSample {
     pub age: Span,
     /// Edges that it is the mean of, 1 to 2 047.
     pub edges: u32,
+}
+
+/// What the reader has to know: the timer, and how well the encoder's edges are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeConfig {
+    /// Clocks of the edge timer to ticks.
+    pub scale: EdgeScale,
+    /// Noise of the edges.
+    pub noise: EdgeNoise,
+}
+
+impl EdgeConfig {
+    /// For a control rate of `tick_hz`, a timer of `timer_hz` and an encoder with `errors`.
+    ///
+    /// # Errors
+    /// [`RangeError`] for a rate outside 100 Hz to 40 kHz, a clock outside 1 to 250 MHz, or an error of the
+    /// encoder out of range.
+    pub fn new(tick_hz: f64, timer_hz: f64, errors: &EdgeErrors) -> Result<Self, RangeError> {
+        Ok(Self {
+            scale: EdgeScale::new(tick_hz, timer_hz)?,
+            noise: EdgeNoise::new(errors, tick_hz, timer_hz)?,
+        })
+    }
 }
 
 /// Ticks in a clock of the edge timer.
@@ -109,20 +133,26 @@ const REST_BITS: u32 = 20;
 /// Reads the edges of each tick.
 #[derive(Clone, Debug)]
 pub struct EdgeReader {
-    scale: EdgeScale,
+    config: EdgeConfig,
 }
 
 impl EdgeReader {
-    /// A reader for the timer of `scale`.
+    /// A reader.
     #[must_use]
-    pub const fn new(scale: EdgeScale) -> Self {
-        Self { scale }
+    pub const fn new(config: EdgeConfig) -> Self {
+        Self { config }
+    }
+
+    /// How well the edges are known.
+    #[must_use]
+    pub const fn noise(&self) -> &EdgeNoise {
+        &self.config.noise
     }
 
     /// Time from the previous sampling instant to this one.
     #[must_use]
     pub const fn elapsed(&self, observation: &Observation<'_>) -> Span {
-        self.scale.span(observation.elapsed)
+        self.config.scale.span(observation.elapsed)
     }
 
     /// The sample that the edges of the tick make; `None` without an edge, or where they do not tell.
@@ -141,7 +171,7 @@ impl EdgeReader {
         let boundary = observation.count.wrapping_add(above);
         EdgeSample {
             position: Position::from_bits(boundary.wrapping_shl(Position::FRAC_NBITS)),
-            age: self.scale.span(age),
+            age: self.config.scale.span(age),
             edges: 1,
         }
     }
@@ -158,7 +188,10 @@ impl EdgeReader {
         let [older, newer] = times.map(|times| sum_of_ages(observation.sampled_at as u32, times));
         EdgeSample {
             position: Position::from_bits(doubled.wrapping_shl(Position::FRAC_NBITS - 1)),
-            age: self.scale.mean_span(older.wrapping_add(newer), edges),
+            age: self
+                .config
+                .scale
+                .mean_span(older.wrapping_add(newer), edges),
             edges,
         }
     }

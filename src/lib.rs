@@ -49,4 +49,5 @@ pub mod params;
 pub mod quadrature;
 pub mod setpoint;
 pub mod telemetry;
+pub mod uncertainty;
 pub mod units;

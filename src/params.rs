@@ -3,11 +3,12 @@
 use core::fmt;
 
 use crate::controller::config::Gains;
-use crate::edges::EdgeScale;
+use crate::edges::EdgeConfig;
 use crate::estimator::{Delay, EstimatorConfig};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
 use crate::{controller, output};
 
@@ -21,6 +22,8 @@ pub struct AxisParams {
     pub tick_hz: f64,
     /// Clock of the edge timer, Hz: 1e6 to 250e6.
     pub timer_hz: f64,
+    /// Errors of the encoder, from which estimates state their uncertainty.
+    pub encoder: EdgeErrors,
     /// What the axis is and how it may move.
     pub motion: MotionParams,
     /// Estimator; its parameters are in ticks.
@@ -130,8 +133,8 @@ impl core::error::Error for ParamError {}
 /// the lags of the estimator beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
-    /// Clocks of the edge timer to ticks.
-    pub edges: EdgeScale,
+    /// Edge timer and noise of the edges.
+    pub edges: EdgeConfig,
     /// Estimator.
     pub estimator: EstimatorConfig,
     /// Control law.
@@ -148,7 +151,7 @@ impl AxisParams {
     /// # Errors
     /// [`ParamError`] naming the first parameter that is wrong, its value and the allowed range.
     pub fn validate(&self) -> Result<AxisConfig, ParamError> {
-        let edges = EdgeScale::new(self.tick_hz, self.timer_hz)?;
+        let edges = EdgeConfig::new(self.tick_hz, self.timer_hz, &self.encoder)?;
         // Before anything is converted: conversions have their own, more general names.
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;

@@ -10,6 +10,7 @@ use leadscrew::params::{AxisConfig, AxisParams, MotionParams, OutputParams, Para
 use leadscrew::setpoint::profile::{PlanError, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::telemetry::Record;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{Position, checked};
 
 use crate::machine::{Machine, MachineParams};
@@ -59,6 +60,7 @@ impl MoveAndBack {
         Ok(AxisParams {
             tick_hz: self.tick_hz,
             timer_hz: machine.encoder.encoder.timer_hz,
+            encoder: EdgeErrors::default(),
             motion: MotionParams {
                 counts_per_mm: machine.mount.counts_per_mm,
                 full_command_feed_mm_per_min: machine.drive.full_command_feed_mm_per_min,

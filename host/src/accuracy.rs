@@ -1,7 +1,8 @@
 //! Estimators on prescribed motions: error against the truth, and lag by response.
 
-use leadscrew::edges::EdgeScale;
+use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::{Estimate, EstimatorConfig};
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::RangeError;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
@@ -22,6 +23,8 @@ pub struct Trial {
     pub tick_hz: f64,
     /// Ticks to run after warm-up.
     pub ticks: u32,
+    /// What is said of the encoder's edges.
+    pub errors: EdgeErrors,
     /// Seed of the encoder.
     pub seed: u64,
 }
@@ -42,7 +45,7 @@ impl Trial {
     /// A parameter of the encoder out of range.
     pub fn observe(&self, config: EstimatorConfig) -> Result<Observed, RangeError> {
         let mut scene = Scene::new(self.motion, &self.encoder, self.tick_hz, 0.0, self.seed)?;
-        let scale = EdgeScale::new(self.tick_hz, self.encoder.encoder.timer_hz)?;
+        let scale = EdgeConfig::new(self.tick_hz, self.encoder.encoder.timer_hz, &self.errors)?;
         let mut listening = Listening::new(&[config], scale);
         let mut truth = TruthTrack::default();
         let mut estimates = Vec::new();
@@ -145,6 +148,7 @@ mod tests {
             encoder: EncoderModel::ideal(),
             tick_hz: 1000.0,
             ticks: 300,
+            errors: EdgeErrors::default(),
             seed: 1,
         };
         let simple = EstimatorConfig::by_name("simple").ok().flatten();

@@ -1,7 +1,7 @@
 //! Estimators that only listen: capture by capture, all on the same evidence.
 
 use leadscrew::capture::{CaptureHealth, Unwrapper};
-use leadscrew::edges::{EdgeReader, EdgeScale};
+use leadscrew::edges::{EdgeConfig, EdgeReader};
 use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, Evidence};
 use leadscrew::hal::Capture;
 use leadscrew::units::Command;
@@ -17,7 +17,7 @@ pub struct Listening {
 impl Listening {
     /// Estimators of `configs` behind an edge timer of `scale`.
     #[must_use]
-    pub fn new(configs: &[EstimatorConfig], scale: EdgeScale) -> Self {
+    pub fn new(configs: &[EstimatorConfig], scale: EdgeConfig) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(scale),

@@ -12,12 +12,14 @@
 //! | [`exponential`] | differenced y += α(x − y) | P2 |
 //! | [`simple`] | differenced mean of N samples | P2 |
 //! | [`gaussian`] | differenced one-sided Gaussian-weighted mean | P2 |
+//! | [`polynomial`] | least-squares quadratic through edge samples at their times | |
 //!
 //! A further estimator is a file beside these and a line in the list at the end of this one.
 
 pub mod difference;
 pub mod exponential;
 pub mod gaussian;
+pub mod polynomial;
 pub mod simple;
 
 use crate::capture::Observation;
@@ -290,4 +292,6 @@ estimators! {
     Simple => simple, "simple", simple::Config::new(15);
     /// One-sided Gaussian-weighted moving average.
     Gaussian => gaussian, "gaussian", gaussian::Config::new(6.0, 25);
+    /// Local polynomial through the edges.
+    Polynomial => polynomial, "polynomial", polynomial::Config::new(15, polynomial::Answer::Newest);
 }

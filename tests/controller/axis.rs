@@ -3,13 +3,14 @@
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
-use leadscrew::edges::EdgeScale;
+use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Capture;
 use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{Command, Position};
 
 use crate::signals::config as controller_config;
@@ -17,7 +18,7 @@ use crate::signals::config as controller_config;
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
     AxisConfig {
-        edges: EdgeScale::new(1000.0, 84e6).unwrap(),
+        edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
         estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
             .unwrap()
             .unwrap(),

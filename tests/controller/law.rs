@@ -6,6 +6,7 @@ use leadscrew::controller::{Config, Controller};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::params::{AxisParams, MotionParams, OutputParams};
 use leadscrew::setpoint::Setpoint;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
@@ -121,6 +122,7 @@ fn lathe_gains(tick_hz: f64) -> (AxisParams, Config) {
     let params = AxisParams {
         tick_hz,
         timer_hz: 84e6,
+        encoder: EdgeErrors::default(),
         motion: MotionParams::default(),
         estimator: EstimatorConfig::by_name("exponential").unwrap().unwrap(),
         controller: drive.place_poles(35.0).unwrap(),

@@ -6,7 +6,7 @@ use leadscrew::hal::Capture;
 use leadscrew_host::listening::Listening;
 use leadscrew_host::statistics::Spread;
 
-use crate::{counting_estimators, scale};
+use crate::{counting_estimators, edges};
 
 /// Standard deviation of the rounding to a whole count, d: 1/√12.
 pub const QUANTISATION_SIGMA_D: f64 = 0.288_675_134_594_812_9;
@@ -28,7 +28,7 @@ impl NoiseGain {
     /// sum of squares of the impulse response.
     #[must_use]
     pub fn of(config: EstimatorConfig) -> Self {
-        let mut listening = Listening::new(&[config], scale());
+        let mut listening = Listening::new(&[config], edges());
         let (mut velocity, mut acceleration) = (Spread::default(), Spread::default());
         let rest = 2 * config.warm_up_ticks() + 8;
         for tick in 0..rest {
@@ -72,7 +72,7 @@ fn the_stated_uncertainty_is_that_of_rounding_by_these_gains() {
     for config in counting_estimators().into_iter().chain(averages) {
         let gain = NoiseGain::of(config);
         let mut stated = None;
-        Listening::new(&[config], scale()).hear(&Capture::default(), None, |_, estimate| {
+        Listening::new(&[config], edges()).hear(&Capture::default(), None, |_, estimate| {
             stated = Some(estimate.variances);
         });
         let Variances {

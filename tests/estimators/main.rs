@@ -5,15 +5,16 @@ mod oracle;
 mod papers;
 mod response;
 
-use leadscrew::edges::EdgeScale;
+use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene::Motion;
 use leadscrew_host::accuracy::{Observed, Trial};
 
 /// The timer of the reference machine at 1 kHz.
-fn scale() -> EdgeScale {
-    EdgeScale::new(1000.0, 84e6).unwrap()
+fn edges() -> EdgeConfig {
+    EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap()
 }
 
 /// The estimators that use counts alone, with their default parameters.
@@ -30,6 +31,7 @@ fn observe(motion: Motion, encoder: EncoderModel, ticks: u32, config: EstimatorC
         encoder,
         tick_hz: 1000.0,
         ticks,
+        errors: EdgeErrors::default(),
         seed: 1,
     }
     .observe(config)

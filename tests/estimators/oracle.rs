@@ -9,7 +9,7 @@ use leadscrew::hal::Capture;
 use leadscrew::units::Velocity;
 use proptest::prelude::*;
 
-use crate::{counting_estimators, scale};
+use crate::{counting_estimators, edges};
 
 /// Smoothed positions by the formulas of P2 in `f64`, for a shaft that has always stood at the first count.
 fn smoothed(config: &EstimatorConfig, counts: &[i64]) -> Vec<f64> {
@@ -34,7 +34,7 @@ fn smoothed(config: &EstimatorConfig, counts: &[i64]) -> Vec<f64> {
 fn update(estimator: &mut Estimator, unwrapper: &mut Unwrapper, capture: &Capture<'_>) -> Estimate {
     estimator.update(&Evidence {
         observation: &unwrapper.unwrap(capture),
-        edges: &EdgeReader::new(scale()),
+        edges: &EdgeReader::new(edges()),
         command: None,
     })
 }

@@ -7,6 +7,7 @@ use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
     AxisConfig, AxisParams, ControllerParams, MotionParams, OutputParams, ParamError,
 };
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::RangeError;
 use proptest::prelude::*;
 
@@ -14,6 +15,7 @@ use crate::seeded::seeded;
 
 fn defaults() -> AxisParams {
     AxisParams {
+        encoder: EdgeErrors::default(),
         tick_hz: 1000.0,
         timer_hz: 84e6,
         motion: MotionParams::default(),

@@ -16,6 +16,7 @@ use leadscrew::hal::Capture;
 use leadscrew::params::{AxisParams, MotionParams, OutputParams, ParamError};
 use leadscrew::setpoint::profile::Profile;
 use leadscrew::telemetry::Record;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
 /// Anything outside, so that nothing is worked out beforehand.
@@ -64,11 +65,12 @@ fn configured() -> Result<Axis, ParamError> {
         natural_period_s: number(),
         damping: number(),
     };
-    let estimator = match outside() % 4 {
+    let estimator = match outside() % 5 {
         0 => EstimatorConfig::by_name("difference")?,
         1 => EstimatorConfig::by_name("exponential")?,
         2 => EstimatorConfig::by_name("simple")?,
-        _ => EstimatorConfig::by_name("gaussian")?,
+        3 => EstimatorConfig::by_name("gaussian")?,
+        _ => EstimatorConfig::by_name("polynomial")?,
     };
     let Some(estimator) = estimator else {
         return configured();
@@ -76,6 +78,10 @@ fn configured() -> Result<Axis, ParamError> {
     let params = AxisParams {
         tick_hz: number(),
         timer_hz: number(),
+        encoder: EdgeErrors {
+            edge_noise_d: number(),
+            ..EdgeErrors::default()
+        },
         motion: MotionParams {
             max_feed_mm_per_min: number(),
             ..MotionParams::default()

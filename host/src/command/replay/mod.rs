@@ -6,8 +6,9 @@ use std::fmt;
 use std::path::Path;
 
 use leadscrew::capture::CaptureHealth;
-use leadscrew::edges::EdgeScale;
+use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::{Estimate, EstimatorConfig};
+use leadscrew::uncertainty::EdgeErrors;
 
 use super::{
     MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
@@ -104,7 +105,7 @@ impl Replay {
         if ticks > MAX_TICKS {
             return Err(too_long(file, ticks, tick_hz));
         }
-        let scale = EdgeScale::new(tick_hz, sampler.timer_hz() as f64)
+        let scale = EdgeConfig::new(tick_hz, sampler.timer_hz() as f64, &EdgeErrors::default())
             .map_err(|error| CommandError::Usage(error.to_string()))?;
         let mut progress = Progress::new("replaying", ticks);
         let mut listening = Listening::new(configs, scale);

@@ -3,6 +3,7 @@
 
 use board_mps2_an386::instructions::Counter;
 use leadscrew::axis::{Axis, Inputs};
+use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::{Capture, Latch};
 use leadscrew::quadrature::Decoder;
 use leadscrew::telemetry::Record;
@@ -17,12 +18,8 @@ const TICKS: u32 = 4000;
 /// Edges of a tick at full speed, and the most that a ring holds.
 const EDGES: usize = 150;
 
-static SAMPLES: ConstStaticCell<[Samples; 4]> = ConstStaticCell::new([
-    Samples::of(ESTIMATORS[0]),
-    Samples::of(ESTIMATORS[1]),
-    Samples::of(ESTIMATORS[2]),
-    Samples::of(ESTIMATORS[3]),
-]);
+static SAMPLES: ConstStaticCell<[Samples; ESTIMATORS]> =
+    ConstStaticCell::new(Samples::of_each(EstimatorConfig::NAMES));
 
 static EDGE: ConstStaticCell<[Samples; 2]> =
     ConstStaticCell::new([Samples::of("edges_150"), Samples::of("decoder_step")]);

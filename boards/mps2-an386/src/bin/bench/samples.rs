@@ -20,6 +20,17 @@ impl Samples {
         }
     }
 
+    /// No counts yet, for each of `names`, of which there are `N`.
+    pub const fn of_each<const N: usize>(names: &[&'static str]) -> [Self; N] {
+        let mut all = [const { Self::of("") }; N];
+        let mut index = 0;
+        while index < N {
+            all[index].name = names[index];
+            index += 1;
+        }
+        all
+    }
+
     /// Adds a count; those beyond [`MOST`] are left out.
     pub fn push(&mut self, count: u32) {
         let _ = self.counts.push(count);

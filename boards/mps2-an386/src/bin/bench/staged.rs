@@ -13,14 +13,14 @@ use leadscrew_hal_mock::scenario::TimedMove;
 
 use crate::samples::Samples;
 
-/// The estimators of the papers, by name.
-pub const ESTIMATORS: [&str; 4] = ["difference", "exponential", "simple", "gaussian"];
+/// How many estimators there are.
+pub const ESTIMATORS: usize = EstimatorConfig::NAMES.len();
 
 /// One stage after the other.
 pub struct Staged {
     unwrapper: Unwrapper,
     edges: EdgeReader,
-    estimators: [Estimator; 4],
+    estimators: [Estimator; ESTIMATORS],
     trajectory: Trajectory,
     controller: Controller,
     output: Output,
@@ -29,7 +29,7 @@ pub struct Staged {
 /// Counts of the stages.
 pub struct StageSamples {
     unwrap: Samples,
-    estimators: [Samples; 4],
+    estimators: [Samples; ESTIMATORS],
     trajectory: Samples,
     controller: Samples,
     output: Samples,
@@ -39,12 +39,7 @@ impl StageSamples {
     pub const fn new() -> Self {
         Self {
             unwrap: Samples::of("unwrap"),
-            estimators: [
-                Samples::of(ESTIMATORS[0]),
-                Samples::of(ESTIMATORS[1]),
-                Samples::of(ESTIMATORS[2]),
-                Samples::of(ESTIMATORS[3]),
-            ],
+            estimators: Samples::of_each(EstimatorConfig::NAMES),
             trajectory: Samples::of("trajectory"),
             controller: Samples::of("controller"),
             output: Samples::of("output"),
@@ -64,7 +59,7 @@ impl StageSamples {
 
 impl Staged {
     /// The stages of an axis with `config`; the estimator in its loop is number `in_loop`.
-    pub fn new(config: &AxisConfig, estimators: [EstimatorConfig; 4]) -> Self {
+    pub fn new(config: &AxisConfig, estimators: [EstimatorConfig; ESTIMATORS]) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
@@ -99,8 +94,8 @@ impl Staged {
             edges: &self.edges,
             command: Some(self.output.command()),
         };
-        let mut estimates = [None; 4];
-        let mut estimator_counts = [0; 4];
+        let mut estimates = [None; ESTIMATORS];
+        let mut estimator_counts = [0; ESTIMATORS];
         for ((estimator, estimate), count) in self
             .estimators
             .iter_mut()

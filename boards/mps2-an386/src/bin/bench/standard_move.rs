@@ -21,7 +21,7 @@ const IN_LOOP: usize = 1;
 
 struct Table {
     stages: StageSamples,
-    steps: [Samples; 4],
+    steps: [Samples; ESTIMATORS],
     record: Samples,
     queue: Samples,
 }
@@ -31,12 +31,7 @@ static RECORDS: ConstStaticCell<Queue<Record, 4>> = ConstStaticCell::new(Queue::
 
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Table {
     stages: StageSamples::new(),
-    steps: [
-        Samples::of(ESTIMATORS[0]),
-        Samples::of(ESTIMATORS[1]),
-        Samples::of(ESTIMATORS[2]),
-        Samples::of(ESTIMATORS[3]),
-    ],
+    steps: Samples::of_each(EstimatorConfig::NAMES),
     record: Samples::of("record"),
     queue: Samples::of("queue"),
 });
@@ -50,10 +45,10 @@ pub fn config(estimator: EstimatorConfig) -> Result<(AxisConfig, Script), Scenar
     Ok((config, script))
 }
 
-/// The four estimators of the papers.
-pub fn estimators() -> Result<[EstimatorConfig; 4], ScenarioError> {
-    let mut configs = [const { None }; 4];
-    for (config, name) in configs.iter_mut().zip(ESTIMATORS) {
+/// All estimators with their default parameters.
+pub fn estimators() -> Result<[EstimatorConfig; ESTIMATORS], ScenarioError> {
+    let mut configs = [const { None }; ESTIMATORS];
+    for (config, name) in configs.iter_mut().zip(EstimatorConfig::NAMES) {
         *config = EstimatorConfig::by_name(name)?;
     }
     Ok(configs.map(|config| config.expect("they are in the list")))
@@ -63,7 +58,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     let table = TABLE.take();
     let estimators = estimators()?;
     let (loop_config, script) = config(estimators[IN_LOOP])?;
-    let mut axes = [const { None }; 4];
+    let mut axes = [const { None }; ESTIMATORS];
     for (axis, estimator) in axes.iter_mut().zip(estimators) {
         *axis = Some(Axis::new(config(estimator)?.0));
     }
@@ -86,7 +81,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
             enable: true,
         };
         let (mut record, mut queued) = (0, 0);
-        let mut steps = [0; 4];
+        let mut steps = [0; ESTIMATORS];
         for (index, axis) in axes.iter_mut().flatten().enumerate() {
             steps[index] = counter.count(|| Record::new(axis.step(&inputs)));
             let outputs = *axis.outputs();

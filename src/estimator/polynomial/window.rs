@@ -1,0 +1,202 @@
+//! The samples of the window.
+
+use super::config::{Config, MIN_SAMPLES};
+use super::fit::{Sums, wide};
+
+/// Most samples.
+pub const CAPACITY: usize = 64;
+/// Fractional bits of a place in the window: what 2 047 d/tick go in 64 ticks has 17 bits, and a sign.
+pub const PLACE_FRAC: u32 = 14;
+
+/// A sample: where the shaft was at a step of the grid.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Steps from the window's origin.
+    pub step: i32,
+    /// Edges that it is the mean of.
+    pub edges: u32,
+    /// Place, d with [`PLACE_FRAC`] fractional bits; wraps.
+    pub place: i32,
+}
+
+/// Samples, newest first, about an origin that moves along: half a window before the sampling instant, at the place
+/// of the count.
+///
+/// Steps and places wrap; only differences from the origin are used.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts.
+    places: [i32; 2 * CAPACITY],
+    steps: [i32; 2 * CAPACITY],
+    edges_of: [u16; CAPACITY],
+    newest: usize,
+    count: usize,
+    edges: u32,
+    /// Places from the base, added up.
+    total: i64,
+    origin: i32,
+    base: i32,
+    regularity: Regularity,
+}
+
+/// How many of the newest samples came one a tick, at one and the same step from the origin.
+#[derive(Clone, Copy, Debug)]
+struct Regularity {
+    step: i32,
+    samples: usize,
+}
+
+impl Window {
+    pub const fn new() -> Self {
+        Self {
+            places: [0; 2 * CAPACITY],
+            steps: [0; 2 * CAPACITY],
+            edges_of: [0; CAPACITY],
+            newest: 0,
+            count: 0,
+            edges: 0,
+            total: 0,
+            origin: 0,
+            base: 0,
+            regularity: Regularity {
+                step: 0,
+                samples: 0,
+            },
+        }
+    }
+
+    /// Forgets all samples.
+    pub const fn clear(&mut self) {
+        self.count = 0;
+        self.edges = 0;
+        self.total = 0;
+        self.regularity.samples = 0;
+    }
+
+    /// Samples.
+    pub const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Edges of all samples.
+    pub const fn edges(&self) -> u32 {
+        self.edges
+    }
+
+    /// Step from the origin of samples that stand one a tick, a full window of them.
+    #[inline]
+    pub const fn regular(&self, config: &Config) -> Option<i32> {
+        if self.count == config.window() as usize && self.regularity.samples >= self.count {
+            Some(self.regularity.step)
+        } else {
+            None
+        }
+    }
+
+    /// Goes on by a tick: the origin moves by `steps` of the grid and to the place `base`, a sample comes and old ones go.
+    #[inline]
+    pub fn tick(&mut self, config: &Config, steps: i32, base: i32, sample: Option<Sample>) {
+        self.origin = self.origin.wrapping_add(steps);
+        let way = base.wrapping_sub(self.base);
+        self.base = base;
+        self.total = self.total.wrapping_sub(wide(way, self.count as i32));
+        match sample {
+            Some(sample) => {
+                let goes_on = steps == super::STEPS && sample.step == self.regularity.step;
+                let before = if goes_on { self.regularity.samples } else { 0 };
+                self.regularity = Regularity {
+                    step: sample.step,
+                    samples: before.saturating_add(1),
+                };
+                self.push(sample);
+            }
+            None => self.regularity.samples = 0,
+        }
+        self.drop_old(config);
+    }
+
+    #[inline]
+    fn push(&mut self, sample: Sample) {
+        if self.count >= CAPACITY {
+            self.drop_oldest();
+        }
+        self.newest = self.newest.wrapping_sub(1) & (CAPACITY - 1);
+        let (first, second) = (self.newest, self.newest.wrapping_add(CAPACITY));
+        let step = self.origin.wrapping_add(sample.step);
+        for slot in [first, second] {
+            if let (Some(place), Some(at)) = (self.places.get_mut(slot), self.steps.get_mut(slot)) {
+                *place = sample.place;
+                *at = step;
+            }
+        }
+        if let Some(edges) = self.edges_of.get_mut(first) {
+            *edges = sample.edges as u16;
+        }
+        self.count = self.count.wrapping_add(1);
+        self.edges = self.edges.wrapping_add(sample.edges);
+        self.total = self
+            .total
+            .wrapping_add(i64::from(sample.place.wrapping_sub(self.base)));
+    }
+
+    /// Lets go of what is too old; a few a tick, which is faster than they come.
+    #[inline]
+    fn drop_old(&mut self, config: &Config) {
+        let half_window = config.window_steps.wrapping_shr(1);
+        for _ in 0..4 {
+            let limit = if self.count > MIN_SAMPLES {
+                config.window_steps
+            } else {
+                config.widest_steps
+            };
+            let last = self.newest.wrapping_add(self.count).wrapping_sub(1);
+            let Some(oldest) = self.steps.get(last) else {
+                return;
+            };
+            let age = half_window.wrapping_sub(oldest.wrapping_sub(self.origin));
+            if self.count == 0 || age < limit {
+                return;
+            }
+            self.drop_oldest();
+        }
+    }
+
+    #[inline]
+    fn drop_oldest(&mut self) {
+        self.count = self.count.saturating_sub(1);
+        let slot = self.newest.wrapping_add(self.count) & (CAPACITY - 1);
+        if let (Some(edges), Some(place)) = (self.edges_of.get(slot), self.places.get(slot)) {
+            self.edges = self.edges.wrapping_sub(u32::from(*edges));
+            self.total = self
+                .total
+                .wrapping_sub(i64::from(place.wrapping_sub(self.base)));
+        }
+    }
+
+    /// Places from the base, added up.
+    pub const fn total(&self) -> i64 {
+        self.total
+    }
+
+    /// Places from the base, newest first.
+    #[inline]
+    pub fn places(&self) -> impl Iterator<Item = i32> {
+        let base = self.base;
+        self.places
+            .get(self.newest..)
+            .unwrap_or(&[])
+            .iter()
+            .map(move |place| place.wrapping_sub(base))
+    }
+
+    /// Sums over all samples.
+    #[inline(never)]
+    pub fn sums(&self) -> Sums {
+        let steps = self.steps.get(self.newest..).unwrap_or(&[]);
+        let mut sums = Sums::default();
+        for (place, step) in self.places().zip(steps).take(self.count) {
+            sums.add(step.wrapping_sub(self.origin), place);
+        }
+        sums
+    }
+}
