@@ -9,6 +9,7 @@ mod encoder_edges;
 mod encoder_errors;
 mod encoder_index;
 mod friction;
+mod motions;
 mod scenes;
 #[path = "../support/seeded.rs"]
 mod seeded;
