@@ -87,6 +87,20 @@ impl Encoder {
         self.sampling_advance
     }
 
+    /// Edges a revolution.
+    #[must_use]
+    pub const fn edges(&self) -> usize {
+        self.head.edges()
+    }
+
+    /// The truth that a learned map is to find: how far above boundary k the edge k modulo
+    /// [`Self::edges`] lies when it is passed forward or backward, d. What does not repeat is left out.
+    #[must_use]
+    pub fn placement_error(&self, edge: usize, backward: bool) -> f64 {
+        let error = self.head.placement_error(edge % self.edges(), backward);
+        error as f64 / 4_294_967_296.0
+    }
+
     /// Moves the shaft through one tick and samples at its end.
     pub fn advance(&mut self, arc: &Arc) {
         self.ring.release();
