@@ -17,7 +17,7 @@ pub use self::model::{EncoderModel, EncoderParams};
 
 use self::edge_timer::EdgeTimer;
 use self::head::Head;
-use self::ring::{Direction, Ring};
+pub(crate) use self::ring::{Direction, Ring};
 use crate::arc::Arc;
 use crate::disc::Disc;
 use crate::random::{LARGEST_BELL, Noise, bell_scale_q32};
@@ -217,6 +217,6 @@ impl Encoder {
 }
 
 /// True if a stamp is not after a sampling instant; both are of about the same time.
-const fn is_reached(time: u32, sampled_at: u32) -> bool {
+pub(crate) const fn is_reached(time: u32, sampled_at: u32) -> bool {
     sampled_at.wrapping_sub(time).cast_signed() >= 0
 }

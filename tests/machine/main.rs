@@ -8,6 +8,7 @@ mod encoder_capture;
 mod encoder_edges;
 mod encoder_errors;
 mod encoder_index;
+mod faults;
 mod friction;
 mod motions;
 mod scenes;
