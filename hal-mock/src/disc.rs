@@ -26,6 +26,8 @@ leadscrew::parameter_table! {
         eccentricity_d: 1.5, "d", 0.0..=5.0;
         /// Amplitude of the error twice a revolution
         second_harmonic_d: 0.3, "d", 0.0..=2.0;
+        /// Largest drift of each of the four offsets, as temperature makes it; the same disc otherwise
+        phase_drift_d: 0.0, "d", 0.0..=0.1;
     }
 }
 
@@ -46,7 +48,11 @@ impl Disc {
         params.check()?;
         let edges = whole_lines(params.edges_per_revolution)?;
         let mut noise = Noise::new(seed, 1);
-        let offsets = [(); 4].map(|()| params.phase_offset_d * noise.uniform());
+        // A stream of its own: what has drifted is the same disc.
+        let mut drift = Noise::new(seed, 5);
+        let offsets = [(); 4].map(|()| {
+            params.phase_offset_d * noise.uniform() + params.phase_drift_d * drift.uniform()
+        });
         let (first_phase, second_phase) = (noise.uniform(), noise.uniform());
         let mut errors = [0; MAX_EDGES];
         let (mut line, mut lowest) = (0.0, -1.0);

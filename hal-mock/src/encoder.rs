@@ -17,7 +17,7 @@ pub use self::model::{EncoderModel, EncoderParams};
 
 use self::edge_timer::EdgeTimer;
 use self::head::Head;
-use self::ring::{Direction, Ring};
+pub(crate) use self::ring::{Direction, Ring};
 use crate::arc::Arc;
 use crate::disc::Disc;
 use crate::random::{LARGEST_BELL, Noise, bell_scale_q32};
@@ -85,6 +85,20 @@ impl Encoder {
     #[must_use]
     pub const fn sampling_advance(&self) -> f64 {
         self.sampling_advance
+    }
+
+    /// Edges a revolution.
+    #[must_use]
+    pub const fn edges(&self) -> usize {
+        self.head.edges()
+    }
+
+    /// The truth that a learned map is to find: how far above boundary k the edge k modulo
+    /// [`Self::edges`] lies when it is passed forward or backward, d. What does not repeat is left out.
+    #[must_use]
+    pub fn placement_error(&self, edge: usize, backward: bool) -> f64 {
+        let error = self.head.placement_error(edge % self.edges(), backward);
+        error as f64 / 4_294_967_296.0
     }
 
     /// Moves the shaft through one tick and samples at its end.
@@ -203,6 +217,6 @@ impl Encoder {
 }
 
 /// True if a stamp is not after a sampling instant; both are of about the same time.
-const fn is_reached(time: u32, sampled_at: u32) -> bool {
+pub(crate) const fn is_reached(time: u32, sampled_at: u32) -> bool {
     sampled_at.wrapping_sub(time).cast_signed() >= 0
 }

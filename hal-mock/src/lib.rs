@@ -1,7 +1,7 @@
 //! The simulated machine on the other side of the seam: `no_std`, seeded, the same bits everywhere.
 //!
 //! ```text
-//! command ─► drive ─► shaft ─┬─► encoder ─► Capture
+//! command ─► drive ─► shaft ─┬─► encoder ─► Capture ─► faults ─► Capture
 //!                            ├─► tachogenerator
 //!                            └─► carriage (truth)
 //! ```
@@ -18,11 +18,13 @@ pub mod carriage;
 pub mod disc;
 pub mod drive;
 pub mod encoder;
+pub mod faults;
 pub mod machine;
 pub mod play;
 mod random;
 pub mod scenario;
 pub mod scene;
+mod slip;
 pub mod tachogenerator;
 pub mod trace;
 mod track;

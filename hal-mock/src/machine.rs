@@ -9,6 +9,7 @@ use crate::carriage::{Carriage, CarriageParams};
 use crate::drive::{Drive, DriveParams};
 use crate::encoder::{Encoder, EncoderModel};
 use crate::play::Play;
+use crate::slip::Slip;
 use crate::tachogenerator::Tachogenerator;
 
 /// Where the shaft stands at first: in the middle of the discrete 0.
@@ -23,6 +24,10 @@ leadscrew::parameter_table! {
         coupling_play_mm: 0.0, "mm", 0.0..=1.0;
         /// 0: encoder on the screw; 1: linear scale on the carriage, which puts its backlash into the loop
         linear_scale: 0.0, "0 or 1", 0.0..=1.0;
+        /// Share of its motion that the encoder loses in a slipping coupling; 1: broken
+        coupling_slip: 0.0, "1", 0.0..=1.0;
+        /// When the coupling begins to slip
+        slip_from_s: 0.0, "s", 0.0..=1e6;
     }
 }
 
@@ -55,6 +60,7 @@ impl MachineParams {
             carriage: self.carriage.bare(),
             mount: MountParams {
                 coupling_play_mm: 0.0,
+                coupling_slip: 0.0,
                 ..self.mount
             },
             encoder: EncoderModel::ideal(),
@@ -77,6 +83,7 @@ pub struct Machine {
     drive: Drive,
     carriage: Carriage,
     coupling: Coupling,
+    slip: Option<Slip>,
     encoder: Encoder,
     tachogenerator: Tachogenerator,
     /// Motion of the drive's shaft in the last tick, and the tachogenerator's error in it.
@@ -97,6 +104,10 @@ impl Machine {
             drive: Drive::new(&params.drive, scale, START_D)?,
             carriage: Carriage::new(&params.carriage, scale, START_D)?,
             coupling: Coupling::new(&params.mount, scale),
+            slip: Slip::new(
+                params.mount.coupling_slip,
+                params.mount.slip_from_s * tick_hz,
+            ),
             encoder: Encoder::new(&params.encoder, tick_hz, START_D, seed)?,
             tachogenerator: Tachogenerator::new(scale),
             turned: (Arc::default(), 0.0),
@@ -126,7 +137,16 @@ impl Machine {
                 joined(end, (carriage.position, carriage.velocity))
             }
         };
+        if let Some(slip) = &mut self.slip {
+            self.seen = slip.follow(&self.seen);
+        }
         self.encoder.advance(&self.seen);
+    }
+
+    /// The encoder, for where its edges really lie.
+    #[must_use]
+    pub const fn encoder(&self) -> &Encoder {
+        &self.encoder
     }
 
     /// What really happened.

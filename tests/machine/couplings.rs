@@ -158,6 +158,45 @@ fn a_linear_scale_puts_the_backlash_into_the_loop() {
     );
 }
 
+#[test]
+fn a_slipping_coupling_takes_its_share_from_the_encoder_and_none_from_the_tachogenerator() {
+    for lost in [1.0, 0.4] {
+        let params = MachineParams {
+            mount: MountParams {
+                coupling_slip: lost,
+                slip_from_s: 0.5,
+                ..bare().mount
+            },
+            ..bare()
+        };
+        let (mut slipping, mut sound) = (machine(&params), machine(&bare()));
+        let mut start = None;
+        for tick in 0..1000 {
+            let command = Command::lit("0.5");
+            slipping.step(command, true);
+            sound.step(command, true);
+            let (seen, shaft) = (slipping.truth().shaft, sound.truth().shaft);
+            assert_eq!(slipping.read_tachogenerator(), sound.read_tachogenerator());
+            if tick < 500 {
+                assert_eq!((seen, slipping.capture()), (shaft, sound.capture()));
+                start = Some(shaft.position);
+                continue;
+            }
+            let way = (shaft.position - start.unwrap()) * (1.0 - lost);
+            assert!((seen.position - start.unwrap() - way).abs() < 1e-8);
+            assert!((seen.velocity - shaft.velocity * (1.0 - lost)).abs() < 1e-12);
+            if !on_boundary(seen.position) {
+                assert_eq!(
+                    slipping.capture().count as i32,
+                    seen.position.floor() as i32
+                );
+            }
+        }
+        // At 80 d/tick for half a second.
+        assert!(sound.truth().shaft.position - start.unwrap() > 30_000.0);
+    }
+}
+
 /// Counts and times of a run.
 fn trace(params: &MachineParams, seed: u64) -> Vec<(u32, u32, Vec<u32>)> {
     let mut seen = Vec::new();

@@ -1,6 +1,7 @@
 //! Placement errors of the disc: each term alone has the stated size.
 
 use leadscrew_hal_mock::disc::{Disc, DiscParams};
+use leadscrew_hal_mock::encoder::EncoderModel;
 
 use crate::statistics::{amplitude, assert_sigma, mean_and_sigma};
 
@@ -137,6 +138,39 @@ fn the_terms_of_the_real_encoder_add_up() {
         "lines add 0.10·√(2/2500) = 0.003 at each order"
     );
     assert!((amplitude(&errors, 2) - 0.3).abs() < 0.02);
+}
+
+#[test]
+fn phases_drift_each_by_a_constant_and_leave_the_rest_as_it_was() {
+    let mut drifts = Vec::new();
+    for seed in 0..100 {
+        let before = errors(&DiscParams::default(), seed);
+        let model = EncoderModel::real().drifted(0.02);
+        let after = errors(&model.disc, seed);
+        let moved: Vec<f64> = before.iter().zip(&after).map(|(b, a)| a - b).collect();
+        for (edge, drift) in moved.iter().enumerate() {
+            // Both tables cut to a unit, towards zero.
+            let off = (drift - moved[edge % 4]).abs();
+            assert!(off <= 2.0 * UNIT, "{seed}: {edge} is off by {off}");
+        }
+        drifts.extend_from_slice(&moved[..4]);
+    }
+    assert!(drifts.iter().all(|drift| drift.abs() <= 0.02 + UNIT));
+    assert_sigma(&drifts, 0.02 / 3.0_f64.sqrt());
+}
+
+#[test]
+fn a_drift_of_nothing_is_the_disc_itself() {
+    let model = EncoderModel::real();
+    assert_eq!(model.drifted(0.0), model);
+    // The drift is no share of anything else: what is drawn is the same without it.
+    let offset = DiscParams {
+        phase_drift_d: 0.02,
+        ..none()
+    };
+    let seen = errors(&offset, 3);
+    assert!(seen.chunks(4).all(|line| *line == seen[..4]));
+    assert!(seen[..4].iter().all(|error| *error != 0.0));
 }
 
 #[test]

@@ -205,3 +205,54 @@ fn the_noise_of_other_seeds_is_another() {
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));
 }
+
+#[test]
+fn the_truth_of_the_placement_is_where_edges_are_seen_in_either_direction() {
+    let quiet = EncoderModel {
+        encoder: EncoderParams {
+            noise_d: 0.0,
+            noise_s: 0.0,
+            ..EncoderParams::default()
+        },
+        ..EncoderModel::real().drifted(0.02)
+    };
+    let mut encoder = Encoder::new(&quiet, 1000.0, 0.5, 6).unwrap();
+    assert_eq!(encoder.edges(), 10_000);
+    let velocity = 23.7;
+    for (start, velocity, first_tick) in
+        [(0.5, velocity, 0), (0.5 + 450.0 * velocity, -velocity, 450)]
+    {
+        let seen = places(&mut encoder, start, velocity, first_tick, 450);
+        assert!(seen.len() > 10_000);
+        for (boundary, place) in seen {
+            let edge = boundary.rem_euclid(10_000) as usize;
+            let error = encoder.placement_error(edge, velocity < 0.0);
+            // Half a clock at this speed.
+            assert!(
+                (place - boundary as f64 - error).abs() < 0.6 * velocity.abs() / CLOCKS,
+                "{boundary} at {place}"
+            );
+        }
+    }
+    assert_eq!(
+        encoder.placement_error(10_007, false),
+        encoder.placement_error(7, false)
+    );
+}
+
+#[test]
+fn the_white_encoder_has_white_noise_and_nothing_else() {
+    let mut encoder = Encoder::new(&EncoderModel::white(0.03), 1000.0, 0.5, 8).unwrap();
+    let errors = errors(&places(&mut encoder, 0.5, 7.3, 0, 3000));
+    assert_sigma(&errors, 0.03);
+    let scatter = 1.0 / (errors.len() as f64).sqrt();
+    let (mean, sigma) = mean_and_sigma(&errors);
+    assert!(mean.abs() < 4.0 * sigma * scatter, "{mean}");
+    // No edge tells of another: not of its neighbours, nor of the same phase of a line.
+    for apart in 1..=8 {
+        let pairs = errors.iter().zip(&errors[apart..]);
+        let together: f64 = pairs.map(|(one, other)| one * other).sum();
+        let correlation = together / (sigma * sigma * errors.len() as f64);
+        assert!(correlation.abs() < 4.0 * scatter, "{apart}: {correlation}");
+    }
+}

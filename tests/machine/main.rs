@@ -8,7 +8,9 @@ mod encoder_capture;
 mod encoder_edges;
 mod encoder_errors;
 mod encoder_index;
+mod faults;
 mod friction;
+mod motions;
 mod scenes;
 #[path = "../support/seeded.rs"]
 mod seeded;

@@ -29,6 +29,7 @@ fn exact(motion: Motion, ticks: f64) -> State {
             velocity,
             deceleration,
         } => cubic(velocity, -deceleration, 0.0),
+        _ => unreachable!("not a cubic"),
     }
 }
 

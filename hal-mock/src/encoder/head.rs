@@ -61,6 +61,21 @@ impl Head {
             && track.start().wrapping_sub(self.lower()) >= reach
     }
 
+    /// Edges a revolution.
+    pub const fn edges(&self) -> usize {
+        self.disc.edges()
+    }
+
+    /// Where edge `edge` lies, off its ideal place, but for what does not repeat, Q.32 d.
+    pub fn placement_error(&self, edge: usize, backward: bool) -> i64 {
+        let lower = if backward {
+            self.hysteresis[edge & 1]
+        } else {
+            0
+        };
+        self.disc.error_q32(edge) - lower
+    }
+
     /// The place from which on the count is larger.
     pub fn upper(&mut self) -> i64 {
         if let Some(threshold) = self.upper {

@@ -59,4 +59,30 @@ impl EncoderModel {
             },
         }
     }
+
+    /// The encoder "ideal" with white noise of standard deviation `edge_noise_d` on the place of each edge:
+    /// what bounds on estimators are stated for.
+    #[must_use]
+    pub fn white(edge_noise_d: f64) -> Self {
+        let ideal = Self::ideal();
+        Self {
+            encoder: EncoderParams {
+                noise_d: edge_noise_d,
+                ..ideal.encoder
+            },
+            ..ideal
+        }
+    }
+
+    /// The same encoder after its four phase offsets have drifted, each by up to `phase_drift_d`.
+    #[must_use]
+    pub fn drifted(self, phase_drift_d: f64) -> Self {
+        Self {
+            disc: DiscParams {
+                phase_drift_d,
+                ..self.disc
+            },
+            ..self
+        }
+    }
 }
