@@ -38,6 +38,7 @@
 )]
 
 pub mod axis;
+pub mod calibration;
 pub mod capture;
 pub mod controller;
 pub mod edges;

@@ -1,0 +1,196 @@
+//! What a learned map is worth.
+
+use super::bands::Bands;
+use super::refusal::Refusal;
+
+/// Runs that are kept for comparison.
+pub const MAX_RUNS: usize = 8;
+/// Ratio of speeds from which on two runs are at different speeds.
+pub const SPEED_RATIO: f64 = 1.2;
+
+/// What a finished map must satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Requirements {
+    /// Runs at two speeds, a factor of 1.2 apart: without them nothing shows that the motion trembles in step
+    /// with the shaft at the speed of the run.
+    pub two_speeds: bool,
+    /// Runs in both directions: without them the hysteresis is unknown.
+    pub both_directions: bool,
+    /// Most that a run may differ from the mean of all in one harmonic, d.
+    pub max_disagreement_d: f64,
+    /// Largest error of an edge of the map by what does not repeat, d rms.
+    pub max_edge_residual_d: f64,
+}
+
+impl Default for Requirements {
+    /// Two speeds, both directions, 0.02 d in a harmonic, 0.01 d an edge.
+    fn default() -> Self {
+        Self {
+            two_speeds: true,
+            both_directions: true,
+            max_disagreement_d: 0.02,
+            max_edge_residual_d: 0.01,
+        }
+    }
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RunSummary {
+    /// The shaft went backward.
+    pub backward: bool,
+    /// Revolutions in the average.
+    pub revolutions: u32,
+    /// Speed, d/s.
+    pub speed_d_s: f64,
+    /// Noise of one pass of an edge at this speed: its place and its time, d rms.
+    pub pass_sigma_d: f64,
+    /// Errors that the run shows, d rms.
+    pub errors: Bands,
+    /// The same less the mean of the runs before: what a map learned from those leaves on this run, d rms. None
+    /// for the first run.
+    pub less_earlier_runs: Option<Bands>,
+    /// Second half of the run less its first half, harmonics only, d rms. A half averages over half the
+    /// revolutions: this is more than the error of the whole.
+    pub halves: Bands,
+}
+
+/// The harmonic in which a run differs most from the mean of all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Disagreement {
+    /// Cycles a revolution.
+    pub order: u32,
+    /// Amplitude of the difference, d.
+    pub difference_d: f64,
+    /// Number of the run, from 0.
+    pub run: usize,
+}
+
+/// Estimated errors of the map.
+///
+/// They do not show what trembles in step with the shaft at every speed: that is in the map.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// White error of each edge, d rms.
+    pub edge_sigma_d: f64,
+    /// Error of the harmonics up to 32, d rms.
+    pub long_wave_d: f64,
+    /// Their slope, d/d rms: times v it is an error of velocity.
+    pub slope: f64,
+    /// Their curvature, 1/d rms: times v² it is an error of acceleration.
+    pub curvature_per_d: f64,
+}
+
+/// Noise of edges told apart by the speed of the runs: variance σ_d² + (σ_s·v)².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Noise of an edge's place, d rms.
+    pub place_d: f64,
+    /// Noise of an edge's time, the step of the timer included, s rms.
+    pub time_s: f64,
+}
+
+/// What a learned map is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    runs: [RunSummary; MAX_RUNS],
+    run_count: usize,
+    /// The errors learned: what stays without a map, the four phases apart, d rms.
+    pub errors: Bands,
+    /// Where the runs disagree most; order 0 for a single run.
+    pub disagreement: Disagreement,
+    /// Estimated errors of the map.
+    pub residual: Residual,
+    /// Noise by place and by time; none with one speed.
+    pub noise: Option<Noise>,
+    /// Hysteresis of A less that of B, d; none with one direction. What both have in common moves the whole
+    /// scale with the direction and cannot be seen from steady feeds.
+    pub hysteresis_a_less_b_d: Option<f64>,
+    /// All runs were at about one speed.
+    pub one_speed: bool,
+}
+
+impl Report {
+    pub(super) const fn new(runs: [RunSummary; MAX_RUNS], run_count: usize) -> Self {
+        const NONE: Bands = Bands {
+            first: 0.0,
+            second: 0.0,
+            third_to_tenth: 0.0,
+            eleventh_to_32nd: 0.0,
+            lines: 0.0,
+            edges: 0.0,
+        };
+        Self {
+            runs,
+            run_count,
+            errors: NONE,
+            disagreement: Disagreement {
+                order: 0,
+                difference_d: 0.0,
+                run: 0,
+            },
+            residual: Residual {
+                edge_sigma_d: 0.0,
+                long_wave_d: 0.0,
+                slope: 0.0,
+                curvature_per_d: 0.0,
+            },
+            noise: None,
+            hysteresis_a_less_b_d: None,
+            one_speed: false,
+        }
+    }
+
+    /// The runs in their order.
+    #[must_use]
+    pub fn runs(&self) -> &[RunSummary] {
+        self.runs.get(..self.run_count).unwrap_or(&[])
+    }
+
+    /// Refuses what does not satisfy the requirements.
+    pub(super) fn check(&self, requirements: &Requirements) -> Result<(), Refusal> {
+        let one_direction = self.hysteresis_a_less_b_d.is_none();
+        if requirements.both_directions && one_direction {
+            return Err(Refusal::OneDirection);
+        }
+        if requirements.two_speeds && self.one_speed {
+            let (slowest_d_s, fastest_d_s) = self.speeds();
+            return Err(Refusal::OneSpeed {
+                slowest_d_s,
+                fastest_d_s,
+                ratio: SPEED_RATIO,
+            });
+        }
+        let Disagreement {
+            order,
+            difference_d,
+            run,
+        } = self.disagreement;
+        let limit_d = requirements.max_disagreement_d;
+        if difference_d > limit_d {
+            return Err(Refusal::RunsDisagree {
+                order,
+                difference_d,
+                limit_d,
+                run,
+            });
+        }
+        let residual_d = self.residual.edge_sigma_d;
+        let limit_d = requirements.max_edge_residual_d;
+        if residual_d > limit_d {
+            return Err(Refusal::ResidualTooLarge {
+                residual_d,
+                limit_d,
+            });
+        }
+        Ok(())
+    }
+
+    /// Slowest and fastest run, d/s.
+    pub(super) fn speeds(&self) -> (f64, f64) {
+        let speeds = self.runs().iter().map(|run| run.speed_d_s);
+        speeds.fold((f64::INFINITY, 0.0), |(slowest, fastest), speed| {
+            (speed.min(slowest), speed.max(fastest))
+        })
+    }
+}

@@ -1,0 +1,280 @@
+//! Edge times made directly from a motion and a list of placement errors, in f64: an oracle apart from the
+//! simulator's encoder.
+
+use leadscrew::calibration::{Learner, Progress, Refusal, RunPlan, RunSummary};
+use leadscrew::capture::Unwrapper;
+use leadscrew::hal::{Capture, Latch};
+use leadscrew_hal_mock::disc::{Disc, DiscParams};
+
+pub const TIMER_HZ: f64 = 84e6;
+pub const CLOCKS_PER_TICK: f64 = 84_000.0;
+/// Width of the index pulse, d.
+const INDEX_WIDTH: i64 = 3;
+
+/// Small, seeded, independent of the simulator's.
+pub struct Dice(u64);
+
+impl Dice {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1)
+    }
+
+    pub fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Sum of twelve: close enough to normal.
+    pub fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
+/// The encoder that is learned.
+#[derive(Clone)]
+pub struct Shaft {
+    /// Error of each edge, d.
+    pub errors: Vec<f64>,
+    /// Hysteresis of even (B) and odd (A) edges, d.
+    pub hysteresis: [f64; 2],
+    pub noise_d: f64,
+    pub noise_s: f64,
+}
+
+impl Shaft {
+    /// The encoder "real".
+    pub fn real(seed: u64) -> Self {
+        let disc = Disc::new(&DiscParams::default(), seed).unwrap();
+        let errors = (0..disc.edges())
+            .map(|edge| disc.error_q32(edge) as f64 / 4_294_967_296.0)
+            .collect();
+        Self {
+            errors,
+            hysteresis: [0.02, 0.04],
+            noise_d: 0.005,
+            noise_s: 2e-8,
+        }
+    }
+
+    pub fn edges(&self) -> i64 {
+        self.errors.len() as i64
+    }
+}
+
+/// Motion in ticks and d; `velocity` may be negative.
+#[derive(Clone, Copy)]
+pub struct Motion {
+    pub start: f64,
+    pub velocity: f64,
+    pub acceleration: f64,
+    /// Loss of velocity a tick as a part of it.
+    pub damping: f64,
+    pub wobble_d: f64,
+    pub wobble_ticks: f64,
+    pub wobble_phase: f64,
+    pub drift_d: f64,
+    pub drift_ticks: f64,
+}
+
+impl Motion {
+    /// What a calibration meets: a wobble of 1.7 d and 90 ticks, a drift of 3 d over seven revolutions or so.
+    pub fn calibrating(velocity: f64, dice: &mut Dice) -> Self {
+        Self {
+            start: 10_000.0 * dice.uniform(),
+            wobble_d: 1.7,
+            wobble_phase: dice.uniform(),
+            drift_d: 3.0,
+            drift_ticks: 70_000.0 / velocity.abs(),
+            ..Self::steady(velocity)
+        }
+    }
+
+    pub const fn steady(velocity: f64) -> Self {
+        Self {
+            start: 1234.5,
+            velocity,
+            acceleration: 0.0,
+            damping: 0.0,
+            wobble_d: 0.0,
+            wobble_ticks: 90.0,
+            wobble_phase: 0.0,
+            drift_d: 0.0,
+            drift_ticks: 1000.0,
+        }
+    }
+
+    fn wave(amplitude: f64, period: f64, phase: f64, t: f64) -> (f64, f64) {
+        let turn = std::f64::consts::TAU / period;
+        let (sine, cosine) = (t * turn + phase * std::f64::consts::TAU).sin_cos();
+        (amplitude * sine, amplitude * turn * cosine)
+    }
+
+    /// Position and velocity at a time.
+    fn at(&self, t: f64) -> (f64, f64) {
+        let (wobble, wobbling) = Self::wave(self.wobble_d, self.wobble_ticks, self.wobble_phase, t);
+        let (drift, drifting) = Self::wave(self.drift_d, self.drift_ticks, self.wobble_phase, t);
+        let (x, v) = if self.damping == 0.0 {
+            let v = self.velocity + self.acceleration * t;
+            (self.velocity * t + self.acceleration * t * t / 2.0, v)
+        } else {
+            // dv/dt = a − c·v
+            let rest = self.acceleration / self.damping;
+            let decay = (-self.damping * t).exp();
+            let v = rest + (self.velocity - rest) * decay;
+            (
+                rest * t + (self.velocity - rest) * (1.0 - decay) / self.damping,
+                v,
+            )
+        };
+        (self.start + x + wobble + drift, v + wobbling + drifting)
+    }
+}
+
+/// Edges in the order in which they are passed.
+pub struct Edges<'a> {
+    shaft: &'a Shaft,
+    motion: Motion,
+    dice: Dice,
+    /// Boundary passed next.
+    boundary: i64,
+    backward: bool,
+    time: f64,
+}
+
+impl<'a> Edges<'a> {
+    pub fn new(shaft: &'a Shaft, motion: Motion, seed: u64) -> Self {
+        let backward = motion.velocity < 0.0;
+        let start = motion.at(0.0).0;
+        // Some counts on, clear of the errors at the start.
+        let boundary = start.floor() as i64 + if backward { -8 } else { 8 };
+        Self {
+            shaft,
+            motion,
+            dice: Dice::new(seed),
+            boundary,
+            backward,
+            time: 0.0,
+        }
+    }
+
+    pub fn count(&self) -> i64 {
+        if self.backward {
+            self.boundary
+        } else {
+            self.boundary - 1
+        }
+    }
+
+    /// Boundary and time in ticks of the next edge.
+    pub fn pass(&mut self) -> (i64, f64) {
+        let boundary = self.boundary;
+        let edge = boundary.rem_euclid(self.shaft.edges()) as usize;
+        let mut place =
+            boundary as f64 + self.shaft.errors[edge] + self.shaft.noise_d * self.dice.normal();
+        if self.backward {
+            place -= self.shaft.hysteresis[edge % 2];
+        }
+        let mut t = self.time;
+        for _ in 0..20 {
+            let (x, v) = self.motion.at(t);
+            let step = (place - x) / v;
+            t += step;
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        self.time = t;
+        self.boundary += if self.backward { -1 } else { 1 };
+        (
+            boundary,
+            t + self.shaft.noise_s * 1000.0 * self.dice.normal(),
+        )
+    }
+
+    /// True at the boundary that is the front of the index pulse.
+    pub fn is_front(&self, boundary: i64) -> bool {
+        let front = if self.backward { INDEX_WIDTH } else { 0 };
+        boundary.rem_euclid(self.shaft.edges()) == front
+    }
+}
+
+/// A tick's capture before it is one: what a test may spoil.
+#[derive(Clone, Default)]
+pub struct Tick {
+    pub count: i64,
+    pub sampled_at: u32,
+    pub times: Vec<u32>,
+    pub index: Option<Latch>,
+    pub overrun: bool,
+}
+
+/// All ticks of a motion until `boundaries` were passed.
+pub fn ticks(
+    shaft: &Shaft,
+    motion: Motion,
+    boundaries: usize,
+    seed: u64,
+) -> impl Iterator<Item = Tick> + '_ {
+    let mut edges = Edges::new(shaft, motion, seed);
+    let mut left = boundaries;
+    let mut waiting = edges.pass();
+    let mut count = edges.count() + if edges.backward { 1 } else { -1 };
+    let mut tick = 0.0_f64;
+    std::iter::from_fn(move || {
+        if left == 0 {
+            return None;
+        }
+        let mut seen = Tick {
+            sampled_at: (tick * CLOCKS_PER_TICK) as u64 as u32,
+            ..Tick::default()
+        };
+        while waiting.1 <= tick && left > 0 {
+            let time = (waiting.1 * CLOCKS_PER_TICK) as i64 as u32;
+            count += if edges.backward { -1 } else { 1 };
+            seen.times.push(time);
+            if edges.is_front(waiting.0) {
+                seen.index = Some(Latch {
+                    count: count as u32,
+                    time,
+                });
+            }
+            waiting = edges.pass();
+            left -= 1;
+        }
+        seen.count = count;
+        tick += 1.0;
+        Some(seen)
+    })
+}
+
+/// Feeds ticks to a run until it is complete or they end.
+pub fn learn(
+    learner: &mut Learner<'_>,
+    plan: RunPlan,
+    ticks: impl Iterator<Item = Tick>,
+) -> Result<RunSummary, Refusal> {
+    learner.begin_run(plan)?;
+    let mut unwrapper = Unwrapper::new();
+    for tick in ticks {
+        let capture = Capture {
+            count: tick.count as u32,
+            sampled_at: tick.sampled_at,
+            last_edge_at: tick.times.last().copied(),
+            edges: [&tick.times, &[]],
+            overrun: tick.overrun,
+            index: tick.index,
+            ..Capture::default()
+        };
+        if learner.feed(&unwrapper.unwrap(&capture))? == Progress::Complete {
+            break;
+        }
+    }
+    learner.end_run()
+}
+
+/// Boundaries of a run of so many revolutions, the search for the index and the measuring included.
+pub fn boundaries(shaft: &Shaft, revolutions: usize) -> usize {
+    (revolutions + 4) * shaft.errors.len()
+}
