@@ -51,7 +51,8 @@ pub use self::bands::Bands;
 pub use self::learned::{Direction, Learned};
 pub use self::refusal::Refusal;
 pub use self::report::{
-    Disagreement, MAX_RUNS, Noise, Report, Requirements, Residual, RunSummary, SPEED_RATIO,
+    Disagreement, MAX_RUNS, NOT_SEPARATED, Noise, Report, Requirements, Residual, RunSummary,
+    SPEED_RATIO,
 };
 pub use self::run::{
     MAX_REVOLUTIONS, MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan,

@@ -38,12 +38,12 @@ pub enum Refusal {
     },
     /// Edge times are missing, false or not captured at all.
     MissedEdges {
-        /// Revolution of the run, the first ones to measure the speed included.
+        /// Revolution of the run, from the index on.
         revolution: u32,
     },
     /// The shaft turned back.
     Reversed {
-        /// Revolution of the run.
+        /// Revolution of the run, from the index on.
         revolution: u32,
     },
     /// A revolution takes longer than the timer can tell.
@@ -53,7 +53,7 @@ pub enum Refusal {
     },
     /// The speed does not keep to what the first revolutions gave.
     SpeedChanging {
-        /// Revolution of the run.
+        /// Revolution of the run, from the index on.
         revolution: u32,
         /// Change as a part of the speed.
         change: f64,
@@ -62,12 +62,12 @@ pub enum Refusal {
     },
     /// No index in a revolution.
     IndexMissing {
-        /// Revolution of the run.
+        /// Revolution of the run, from the index on.
         revolution: u32,
     },
     /// An index where none belongs.
     IndexInconsistent {
-        /// Revolution of the run.
+        /// Revolution of the run, from the index on.
         revolution: u32,
         /// Counts by which it is off its place, modulo a revolution.
         off_by: i32,

@@ -23,12 +23,12 @@ pub struct Requirements {
 }
 
 impl Default for Requirements {
-    /// Two speeds, both directions, 0.02 d in a harmonic, 0.01 d an edge.
+    /// Two speeds, both directions, 0.01 d in a harmonic, 0.01 d an edge.
     fn default() -> Self {
         Self {
             two_speeds: true,
             both_directions: true,
-            max_disagreement_d: 0.02,
+            max_disagreement_d: 0.01,
             max_edge_residual_d: 0.01,
         }
     }
@@ -66,9 +66,11 @@ pub struct Disagreement {
     pub run: usize,
 }
 
-/// Estimated errors of the map.
-///
-/// They do not show what trembles in step with the shaft at every speed: that is in the map.
+/// What no report can show, to be told with every map.
+pub const NOT_SEPARATED: &str = "motion in step with the shaft at every speed (a bent screw, an unbalanced or \
+    toothed drive) cannot be told from the encoder's errors by the encoder itself: it is in the map";
+
+/// Estimated errors of the map; see [`NOT_SEPARATED`] for what they do not show.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
     /// White error of each edge, d rms.

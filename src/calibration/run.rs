@@ -186,14 +186,14 @@ impl Run {
         (self.plan.revolutions / ORDER).wrapping_mul(ORDER)
     }
 
-    /// Number of the revolution, those that gave the speed included.
+    /// Number of the revolution, from 0 at the index on; those that gave the speed are 1 and 2.
     fn revolution(&self) -> u32 {
         match &self.stage {
             Stage::Seeking => 0,
             Stage::Timing(timing) => timing.crossings,
-            Stage::Averaging(average) | Stage::Complete(average) => {
-                average.revolution().saturating_add(MEASURING_REVOLUTIONS)
-            }
+            Stage::Averaging(average) | Stage::Complete(average) => average
+                .revolution()
+                .saturating_add(MEASURING_REVOLUTIONS + 1),
         }
     }
 

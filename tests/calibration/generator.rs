@@ -1,7 +1,7 @@
 //! Edge times made directly from a motion and a list of placement errors, in f64: an oracle apart from the
 //! simulator's encoder.
 
-use leadscrew::calibration::{Learner, Progress, Refusal, RunPlan, RunSummary};
+use leadscrew::calibration::{Learner, Progress, Refusal, RunPlan, RunSummary, Work};
 use leadscrew::capture::Unwrapper;
 use leadscrew::hal::{Capture, Latch};
 use leadscrew_hal_mock::disc::{Disc, DiscParams};
@@ -46,7 +46,20 @@ pub struct Shaft {
 impl Shaft {
     /// The encoder "real".
     pub fn real(seed: u64) -> Self {
-        let disc = Disc::new(&DiscParams::default(), seed).unwrap();
+        Self::of(&DiscParams::default(), seed)
+    }
+
+    /// One with the errors of "real" and fewer edges.
+    pub fn small(seed: u64) -> Self {
+        let params = DiscParams {
+            edges_per_revolution: 2000.0,
+            ..DiscParams::default()
+        };
+        Self::of(&params, seed)
+    }
+
+    fn of(params: &DiscParams, seed: u64) -> Self {
+        let disc = Disc::new(params, seed).unwrap();
         let errors = (0..disc.edges())
             .map(|edge| disc.error_q32(edge) as f64 / 4_294_967_296.0)
             .collect();
@@ -133,7 +146,7 @@ impl Motion {
 }
 
 /// Edges in the order in which they are passed.
-pub struct Edges<'a> {
+struct Edges<'a> {
     shaft: &'a Shaft,
     motion: Motion,
     dice: Dice,
@@ -144,7 +157,7 @@ pub struct Edges<'a> {
 }
 
 impl<'a> Edges<'a> {
-    pub fn new(shaft: &'a Shaft, motion: Motion, seed: u64) -> Self {
+    fn new(shaft: &'a Shaft, motion: Motion, seed: u64) -> Self {
         let backward = motion.velocity < 0.0;
         let start = motion.at(0.0).0;
         // Some counts on, clear of the errors at the start.
@@ -159,7 +172,7 @@ impl<'a> Edges<'a> {
         }
     }
 
-    pub fn count(&self) -> i64 {
+    fn count(&self) -> i64 {
         if self.backward {
             self.boundary
         } else {
@@ -168,7 +181,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Boundary and time in ticks of the next edge.
-    pub fn pass(&mut self) -> (i64, f64) {
+    fn pass(&mut self) -> (i64, f64) {
         let boundary = self.boundary;
         let edge = boundary.rem_euclid(self.shaft.edges()) as usize;
         let mut place =
@@ -194,7 +207,7 @@ impl<'a> Edges<'a> {
     }
 
     /// True at the boundary that is the front of the index pulse.
-    pub fn is_front(&self, boundary: i64) -> bool {
+    fn is_front(&self, boundary: i64) -> bool {
         let front = if self.backward { INDEX_WIDTH } else { 0 };
         boundary.rem_euclid(self.shaft.edges()) == front
     }
@@ -210,15 +223,15 @@ pub struct Tick {
     pub overrun: bool,
 }
 
-/// All ticks of a motion until `boundaries` were passed.
+/// All ticks of a motion over `revolutions` and what a run needs to find the index and the speed.
 pub fn ticks(
     shaft: &Shaft,
     motion: Motion,
-    boundaries: usize,
+    revolutions: u32,
     seed: u64,
 ) -> impl Iterator<Item = Tick> + '_ {
     let mut edges = Edges::new(shaft, motion, seed);
-    let mut left = boundaries;
+    let mut left = (revolutions as usize + 4) * shaft.errors.len();
     let mut waiting = edges.pass();
     let mut count = edges.count() + if edges.backward { 1 } else { -1 };
     let mut tick = 0.0_f64;
@@ -249,6 +262,32 @@ pub fn ticks(
     })
 }
 
+/// Work memory on the heap.
+pub struct Memory {
+    sums: Vec<i32>,
+    mean: Vec<i16>,
+}
+
+impl Memory {
+    /// For an encoder of so many edges; filled with what does not belong there.
+    pub fn new(edges: i64) -> Self {
+        Self {
+            sums: vec![12_345; edges as usize],
+            mean: vec![-321; edges as usize],
+        }
+    }
+
+    /// A learner in it.
+    pub fn learner(&mut self) -> Learner<'_> {
+        let edges = self.sums.len() as u32;
+        let work = Work {
+            sums: &mut self.sums,
+            mean: &mut self.mean,
+        };
+        Learner::new(edges, TIMER_HZ, work).unwrap()
+    }
+}
+
 /// Feeds ticks to a run until it is complete or they end.
 pub fn learn(
     learner: &mut Learner<'_>,
@@ -272,9 +311,4 @@ pub fn learn(
         }
     }
     learner.end_run()
-}
-
-/// Boundaries of a run of so many revolutions, the search for the index and the measuring included.
-pub fn boundaries(shaft: &Shaft, revolutions: usize) -> usize {
-    (revolutions + 4) * shaft.errors.len()
 }

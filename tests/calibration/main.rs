@@ -2,3 +2,6 @@
 
 mod generator;
 mod real;
+mod refusals;
+mod runs;
+mod truth;

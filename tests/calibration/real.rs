@@ -1,107 +1,200 @@
-//! The encoder "real" on a shaft that trembles and drifts.
+//! The encoder "real" on a shaft that trembles by 1.7 d with a period of 90 ticks and drifts by 3 d.
 
-use leadscrew::calibration::{Direction, Learned, Learner, Requirements, RunPlan, Work};
+use leadscrew::calibration::{Direction, Learned, Learner, Refusal, Requirements, RunPlan};
 
-use crate::generator::{Dice, Motion, Shaft, TIMER_HZ, boundaries, learn, ticks};
+use crate::generator::{Dice, Memory, Motion, Shaft, learn, ticks};
+use crate::truth::Off;
 
-/// Map less truth in one direction, d, from boundary 0 on, the constant taken out.
-fn off(learned: &Learned<'_>, shaft: &Shaft, direction: Direction) -> Vec<f64> {
-    let phases = learned.phases_d(direction);
-    let backward = direction == Direction::Backward;
-    let mut off: Vec<f64> = (0..shaft.errors.len())
-        .map(|edge| {
-            let hysteresis = if backward {
-                shaft.hysteresis[edge % 2]
-            } else {
-                0.0
-            };
-            learned.error_d(edge) + phases[edge % 4] - (shaft.errors[edge] - hysteresis)
-        })
-        .collect();
-    let mean = off.iter().sum::<f64>() / off.len() as f64;
-    for off in &mut off {
-        *off -= mean;
+/// Learns from runs in both directions at each of `speeds` d/tick.
+fn run_both_ways(
+    learner: &mut Learner<'_>,
+    shaft: &Shaft,
+    revolutions: u32,
+    speeds: &[f64],
+    seed: u64,
+) {
+    let mut dice = Dice::new(seed);
+    for (number, &speed) in (0..).zip(speeds) {
+        for velocity in [speed, -speed] {
+            let motion = Motion::calibrating(velocity, &mut dice);
+            let seed = seed * 100 + 2 * number + u64::from(velocity < 0.0);
+            learn(
+                learner,
+                RunPlan::steady(revolutions),
+                ticks(shaft, motion, revolutions, seed),
+            )
+            .unwrap();
+        }
     }
-    off
 }
 
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
-}
-
-/// Amplitude of a harmonic of the revolution.
-fn amplitude(values: &[f64], order: usize) -> f64 {
-    let (mut cosine, mut sine) = (0.0, 0.0);
-    for (edge, value) in values.iter().enumerate() {
-        let phase = std::f64::consts::TAU * (order * edge) as f64 / values.len() as f64;
-        cosine += value * phase.cos();
-        sine += value * phase.sin();
-    }
-    2.0 * f64::hypot(cosine, sine) / values.len() as f64
+/// The map of a shaft, in its memory.
+fn map<'m>(
+    memory: &'m mut Memory,
+    shaft: &Shaft,
+    revolutions: u32,
+    speeds: &[f64],
+    seed: u64,
+) -> Result<Learned<'m>, Refusal> {
+    let mut learner = memory.learner();
+    run_both_ways(&mut learner, shaft, revolutions, speeds, seed);
+    learner.finish(&Requirements::default())
 }
 
 #[test]
-fn study() {
-    for (acceleration, damping) in [(-0.006, 0.0), (-0.003, 2e-5), (0.0, 4e-5)] {
-        for (revolutions, speeds) in [(40, [150.0, 110.0]), (20, [150.0, 75.0])] {
-            let seed = 1;
-            let shaft = Shaft::real(seed);
-            let (mut sums, mut mean) = (vec![0; 10_000], vec![0; 10_000]);
-            let work = Work {
-                sums: &mut sums,
-                mean: &mut mean,
-            };
-            let mut learner = Learner::new(10_000, TIMER_HZ, work).unwrap();
-            let mut dice = Dice::new(seed);
-            for speed in speeds {
-                for velocity in [speed, -speed] {
-                    let motion = Motion {
-                        velocity,
-                        acceleration: acceleration * f64::signum(velocity),
-                        damping,
-                        ..Motion::steady(velocity)
-                    };
-                    let summary = learn(
-                        &mut learner,
-                        RunPlan::coast(revolutions),
-                        ticks(
-                            &shaft,
-                            motion,
-                            boundaries(&shaft, revolutions as usize),
-                            seed * 100 + dice.uniform().to_bits() % 100,
-                        ),
-                    );
-                    if let Err(e) = &summary {
-                        println!("{e} {e:?}");
-                    }
-                    if let Ok(s) = &summary {
-                        println!("{:?} {:?}", s.speed_d_s, s.less_earlier_runs);
-                    }
-                }
+fn forty_revolutions_at_two_speeds_both_ways_give_the_map() {
+    for seed in 1..=5 {
+        let shaft = Shaft::real(seed);
+        let mut memory = Memory::new(shaft.edges());
+        let learned = map(&mut memory, &shaft, 40, &[83.3, 66.7], seed).unwrap();
+        for direction in [Direction::Forward, Direction::Backward] {
+            let off = Off::new(&learned, &shaft, direction);
+            assert!(off.rms() < 0.0007, "{}", off.rms());
+            for order in 1..=10 {
+                let amplitude = off.amplitude(order);
+                assert!(amplitude < 0.0002, "{order}: {amplitude}");
             }
-            let Ok(learned) = learner.finish(&Requirements {
-                max_disagreement_d: 10.0,
-                two_speeds: false,
-                both_directions: false,
-                ..Default::default()
-            }) else {
-                continue;
+        }
+        assert_eq!(learned.index_front(Direction::Forward), Some(0));
+        assert_eq!(learned.index_front(Direction::Backward), Some(2));
+        let hysteresis = learned.report().hysteresis_a_less_b_d.unwrap();
+        assert!((hysteresis - 0.02).abs() < 0.0002, "{hysteresis}");
+    }
+}
+
+#[test]
+fn speeds_chosen_without_thought_still_satisfy_the_figures() {
+    // 100 and 60 d/tick: 1.11 and 1.85 cycles a revolution.
+    for seed in 1..=5 {
+        let shaft = Shaft::real(seed);
+        let mut memory = Memory::new(shaft.edges());
+        let learned = map(&mut memory, &shaft, 40, &[100.0, 60.0], seed).unwrap();
+        let off = Off::new(&learned, &shaft, Direction::Forward);
+        assert!(off.rms() < 0.003, "{}", off.rms());
+        for order in 1..=10 {
+            let amplitude = off.amplitude(order);
+            assert!(amplitude < 0.004, "{order}: {amplitude}");
+        }
+    }
+}
+
+#[test]
+fn the_fewest_revolutions_give_a_map_at_well_chosen_speeds() {
+    let shaft = Shaft::real(1);
+    let mut memory = Memory::new(shaft.edges());
+    let learned = map(&mut memory, &shaft, 12, &[83.3, 48.0], 1).unwrap();
+    let off = Off::new(&learned, &shaft, Direction::Forward);
+    assert!(off.rms() < 0.0015, "{}", off.rms());
+}
+
+#[test]
+fn the_report_estimates_the_errors_of_the_map() {
+    let within = |stated: f64, true_value: f64, factor: f64| {
+        let ratio = stated / true_value;
+        assert!(
+            ratio < factor && ratio > 1.0 / factor,
+            "{stated} {true_value}"
+        );
+    };
+    for (revolutions, speeds) in [(40, [83.3, 66.7]), (20, [83.3, 66.7]), (40, [100.0, 60.0])] {
+        let (mut stated, mut real) = ([0.0; 4], [0.0; 4]);
+        for seed in 1..=5 {
+            let shaft = Shaft::real(seed);
+            let mut memory = Memory::new(shaft.edges());
+            let learned = map(&mut memory, &shaft, revolutions, &speeds, seed).unwrap();
+            let off = Off::new(&learned, &shaft, Direction::Forward);
+            let residual = learned.report().residual;
+            let white = (off.rms().powi(2) - off.harmonics(0).powi(2)).sqrt();
+            let pairs = [
+                (residual.edge_sigma_d, white),
+                (residual.long_wave_d, off.harmonics(0)),
+                (residual.slope, off.harmonics(1)),
+                (residual.curvature_per_d, off.harmonics(2)),
+            ];
+            for ((stated, real), pair) in stated.iter_mut().zip(&mut real).zip(pairs) {
+                *stated += pair.0 * pair.0;
+                *real += pair.1 * pair.1;
+            }
+        }
+        within(stated[0].sqrt(), real[0].sqrt(), 1.05);
+        // Four runs at two speeds tell the long waves to a factor.
+        for kind in 1..4 {
+            within(stated[kind].sqrt(), real[kind].sqrt(), 1.8);
+        }
+    }
+}
+
+#[test]
+fn the_report_shows_what_a_map_leaves_on_another_run() {
+    let shaft = Shaft::real(3);
+    let mut memory = Memory::new(shaft.edges());
+    let learned = map(&mut memory, &shaft, 40, &[83.3, 48.0], 3).unwrap();
+    let report = learned.report();
+    assert_eq!(report.runs().len(), 4);
+    let last = report.runs()[3];
+    let left = last.less_earlier_runs.unwrap();
+    // Eccentricity 1.5 d, second harmonic 0.3 d, lines 0.10 d, edges 0.03 d.
+    assert!(
+        (last.errors.first - 1.06).abs() < 0.02 && left.first < 0.0005,
+        "{left:?}"
+    );
+    assert!((last.errors.second - 0.21).abs() < 0.02 && left.second < 0.0005);
+    assert!((last.errors.lines - 0.10).abs() < 0.01 && left.lines < 0.001);
+    assert!((last.errors.edges - 0.026).abs() < 0.005 && left.edges < 0.002);
+    assert!(
+        last.halves.first < 0.01 && last.halves.second < 0.01,
+        "{:?}",
+        last.halves
+    );
+    let noise = report.noise.unwrap();
+    assert!((noise.place_d - 0.005).abs() < 0.0003, "{noise:?}");
+    assert!(noise.time_s > 1e-8 && noise.time_s < 3e-8, "{noise:?}");
+}
+
+#[test]
+fn a_tremble_in_step_with_the_shaft_at_one_speed_shows_and_is_refused() {
+    let shaft = Shaft::real(2);
+    let mut memory = Memory::new(shaft.edges());
+    // 111.1 d/tick: once a revolution.
+    let refused = map(&mut memory, &shaft, 40, &[111.1, 66.7], 2).unwrap_err();
+    let Refusal::RunsDisagree {
+        order,
+        difference_d,
+        ..
+    } = refused
+    else {
+        panic!("{refused}");
+    };
+    assert_eq!(order, 1);
+    assert!(difference_d > 0.3, "{difference_d}");
+}
+
+#[test]
+fn a_coast_down_gives_the_map_whatever_the_damping() {
+    // Constant, mixed, proportional to speed; both wheels slow by a tenth and more.
+    for (deceleration, damping) in [(0.006, 0.0), (0.003, 2e-5), (0.0, 4e-5)] {
+        let shaft = Shaft::real(4);
+        let mut memory = Memory::new(shaft.edges());
+        let mut learner = memory.learner();
+        for velocity in [150.0, -110.0] {
+            let motion = Motion {
+                acceleration: -deceleration * f64::signum(velocity),
+                damping,
+                ..Motion::steady(velocity)
             };
-            let o = off(&learned, &shaft, Direction::Forward);
-            println!(
-                "{acceleration} {damping} {revolutions} {speeds:?} seed {seed}: rms {:.5} harmonics {:?}",
-                rms(&o),
-                (1..=10)
-                    .map(|h| format!("{:.4}", amplitude(&o, h)))
-                    .collect::<Vec<_>>()
-            );
-            println!(
-                "   {:?} {:?} {:?} {:?}",
-                learned.report().residual,
-                learned.report().disagreement,
-                learned.report().noise,
-                learned.report().hysteresis_a_less_b_d
-            );
+            learn(
+                &mut learner,
+                RunPlan::coast(40),
+                ticks(&shaft, motion, 40, 9),
+            )
+            .unwrap();
+        }
+        let learned = learner.finish(&Requirements::default()).unwrap();
+        let off = Off::new(&learned, &shaft, Direction::Forward);
+        assert!(off.rms() < 0.001, "{}", off.rms());
+        for order in 1..=10 {
+            let amplitude = off.amplitude(order);
+            assert!(amplitude < 0.0002, "{order}: {amplitude}");
         }
     }
 }
