@@ -49,8 +49,6 @@ pub enum Passed {
     Edge,
     /// The first edge of a revolution: by how much the revolution before was longer than expected, Q.16 d.
     NewRevolution(i32),
-    /// The last edge of the run.
-    Last,
     /// The motion is not what the reference says.
     Lost,
 }
@@ -85,9 +83,22 @@ impl Average {
         average
     }
 
+    /// True when all revolutions are in; what comes then is not taken.
+    pub const fn is_complete(&self) -> bool {
+        self.revolution >= self.revolutions
+    }
+
+    /// Revolutions of a complete average.
+    pub const fn revolutions(&self) -> u32 {
+        self.revolutions
+    }
+
     /// Takes the time of the next edge.
     #[inline]
     pub fn pass(&mut self, time: u32, sums: &mut [i32]) -> Passed {
+        if self.is_complete() {
+            return Passed::Edge;
+        }
         let number = self.next;
         let at = i64::from(number).wrapping_shl(POSITION_FRAC);
         let exact = self.reference.position(time).wrapping_sub(at);
@@ -134,8 +145,8 @@ impl Average {
             self.next = 0;
             self.segment = 0;
             self.revolution = self.revolution.wrapping_add(1);
-            if self.revolution == self.revolutions {
-                return Passed::Last;
+            if self.is_complete() {
+                return Passed::Edge;
             }
             if self.reference.next_revolution().is_none() {
                 return Passed::Lost;
@@ -201,9 +212,10 @@ impl Average {
         1.0 + self.stretch
     }
 
-    /// Velocity of the reference at present, d/clock.
-    pub const fn velocity(&self) -> f64 {
-        self.reference.velocity()
+    /// Mean velocity of a complete average, d/clock.
+    pub fn velocity(&self) -> f64 {
+        let whole = self.revolutions.saturating_sub(1);
+        f64::from(whole) * f64::from(self.edges) / self.reference.elapsed()
     }
 
     /// Standard deviation of one pass of an edge, d.

@@ -1,41 +1,20 @@
 //! Several runs made into one mean, and compared.
 
-use super::bands::{Harmonics, ORDERS, Segments, bands, segment_means};
+use super::bands::{Harmonics, bands, segment_means};
+use super::compare::{Record, compare, noise};
 use super::learned::{Directional, Learned};
 use super::pattern::{self, Match};
 use super::refusal::Refusal;
-use super::report::{
-    Disagreement, MAX_RUNS, Noise, Report, Requirements, Residual, RunSummary, SPEED_RATIO,
-};
+use super::report::{MAX_RUNS, Report, Requirements, RunSummary, SPEED_RATIO};
 use super::run::Run;
 use super::segments::{SEGMENTS, within_revolution};
 
 /// Units of the mean in a d.
-const MEAN_PER_D: f64 = 4096.0;
+pub const MEAN_PER_D: f64 = 4096.0;
 /// Units of the sums of a run in a d.
 const SUM_PER_D: f64 = 65_536.0;
 /// Counts by which the front of the index may differ from run to run.
 const FRONT_PLAY: u32 = 1;
-
-/// What is kept of a run.
-#[derive(Clone, Copy, Debug)]
-struct Record {
-    /// Means of the segments, 1/4096 d.
-    segments: [i16; SEGMENTS],
-    /// White error of an edge of its average, d².
-    edge_variance: f64,
-}
-
-impl Record {
-    const NONE: Self = Self {
-        segments: [0; SEGMENTS],
-        edge_variance: 0.0,
-    };
-
-    fn segments_d(&self) -> Segments {
-        self.segments.map(|mean| f64::from(mean) / MEAN_PER_D)
-    }
-}
 
 /// Sums over the runs of one direction, weighted by revolutions.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,21 +102,16 @@ impl Combination {
         }
         let summary = RunSummary {
             backward: run.is_backward(),
-            revolutions: run.revolutions(),
-            speed_d_s: run.speed_d_s(),
+            revolutions: average.revolutions(),
+            speed_d_s: average.velocity() * run.timer_hz(),
             pass_sigma_d: sigma,
             errors: bands(self.edges, errors),
             less_earlier_runs: (self.count > 0).then(|| bands(self.edges, less_earlier)),
             halves: Harmonics::of(self.edges, halves).bands(),
         };
-        let segments =
-            segment_means(self.edges, errors()).map(|error| libm::round(error * MEAN_PER_D) as i16);
         self.store(
             summary,
-            Record {
-                segments,
-                edge_variance,
-            },
+            Record::new(segment_means(self.edges, errors()), edge_variance),
         );
         let revolutions = f64::from(summary.revolutions);
         if let Some(direction) = self.directions.get_mut(usize::from(summary.backward)) {
@@ -166,11 +140,7 @@ impl Combination {
             return Ok(0);
         }
         let run = self.count;
-        let known = self
-            .records
-            .iter()
-            .take(run)
-            .map(|record| record.edge_variance);
+        let known = self.records.iter().take(run).map(Record::edge_variance);
         let noise = known.fold(edge_variance, f64::max);
         match pattern::compare(sums, mean, noise) {
             Match::Featureless => Ok(0),
@@ -217,12 +187,13 @@ impl Combination {
         report.errors = bands(self.edges, || {
             mean.iter().map(|&error| f64::from(error) / MEAN_PER_D)
         });
-        report.noise = (!report.one_speed).then(|| self.noise());
+        report.noise = (!report.one_speed).then(|| noise(report.runs()));
         let mut directions = self.directions.map(|sums| sums.mean());
         if let [Some(forward), Some(backward)] = directions {
             report.hysteresis_a_less_b_d = Some(hysteresis(&forward, &backward));
         }
-        self.compare_runs(&mut report);
+        let records = self.records.get(..self.count).unwrap_or(&[]);
+        (report.disagreement, report.residual) = compare(self.edges, report.runs(), records);
         report.check(requirements)?;
         turn_to_forward_front(mean, &mut directions);
         Ok(Learned {
@@ -230,92 +201,6 @@ impl Combination {
             directions,
             report,
         })
-    }
-
-    /// Part of a run in the mean.
-    fn share(&self, summary: &RunSummary) -> f64 {
-        f64::from(summary.revolutions) / self.revolutions
-    }
-
-    fn runs(&self) -> impl Iterator<Item = (&RunSummary, &Record)> {
-        self.summaries.iter().zip(&self.records).take(self.count)
-    }
-
-    /// What the differences between the runs say about their mean.
-    fn compare_runs(&self, report: &mut Report) {
-        let mut mean = [0.0; SEGMENTS];
-        let (mut share_squares, mut edge_variance) = (0.0, 1.0 / (12.0 * MEAN_PER_D * MEAN_PER_D));
-        for (summary, record) in self.runs() {
-            let share = self.share(summary);
-            share_squares += share * share;
-            edge_variance += share * share * record.edge_variance;
-            for (mean, segment) in mean.iter_mut().zip(record.segments_d()) {
-                *mean += share * segment;
-            }
-        }
-        // Variance of the mean of each order: Σ g²|c − c̄|²/(1 − Σ g²) for runs of the shares g.
-        let mut variances = [0.0; ORDERS];
-        for (run, (summary, record)) in self.runs().enumerate() {
-            let mut off = record.segments_d();
-            for (off, mean) in off.iter_mut().zip(mean) {
-                *off -= mean;
-            }
-            let share = self.share(summary);
-            let gain = share * share / (1.0 - share_squares).max(f64::EPSILON);
-            let harmonics = Harmonics::of(self.edges, off);
-            for (variance, (order, amplitude)) in variances.iter_mut().zip(harmonics.amplitudes()) {
-                *variance += gain * amplitude * amplitude / 2.0;
-                if amplitude > report.disagreement.difference_d {
-                    report.disagreement = Disagreement {
-                        order,
-                        difference_d: amplitude,
-                        run,
-                    };
-                }
-            }
-        }
-        report.residual = self.residual(variances, edge_variance);
-    }
-
-    fn residual(&self, variances: [f64; ORDERS], edge_variance: f64) -> Residual {
-        let weighted = |power: i32| {
-            let of_order = |(order, &variance): (u32, &f64)| {
-                let wave_number = core::f64::consts::TAU * f64::from(order) / f64::from(self.edges);
-                variance * libm::pow(wave_number, f64::from(power))
-            };
-            libm::sqrt((1..).zip(&variances).map(of_order).sum())
-        };
-        Residual {
-            edge_sigma_d: libm::sqrt(edge_variance),
-            long_wave_d: weighted(0),
-            slope: weighted(2),
-            curvature_per_d: weighted(4),
-        }
-    }
-
-    /// Fits σ² = σ_d² + (σ_s·v)² to the runs.
-    fn noise(&self) -> Noise {
-        let points = || {
-            self.runs().map(|(run, _)| {
-                (
-                    run.speed_d_s * run.speed_d_s,
-                    run.pass_sigma_d * run.pass_sigma_d,
-                )
-            })
-        };
-        let count = self.count as f64;
-        let (sum_x, sum_y) = points().fold((0.0, 0.0), |(x, y), (dx, dy)| (x + dx, y + dy));
-        let (mean_x, mean_y) = (sum_x / count, sum_y / count);
-        let (mut above, mut below) = (0.0, 0.0);
-        for (x, y) in points() {
-            above += (x - mean_x) * (y - mean_y);
-            below += (x - mean_x) * (x - mean_x);
-        }
-        let slope = (above / below).clamp(0.0, mean_y / mean_x);
-        Noise {
-            place_d: libm::sqrt((mean_y - slope * mean_x).max(0.0)),
-            time_s: libm::sqrt(slope),
-        }
     }
 }
 

@@ -34,9 +34,11 @@
 mod average;
 mod bands;
 mod combine;
+mod compare;
 mod index;
 mod learned;
 mod pattern;
+mod plan;
 mod reference;
 mod refusal;
 mod repeats;
@@ -44,18 +46,19 @@ mod report;
 mod run;
 mod segments;
 mod taper;
+mod timing;
 
 use crate::capture::Observation;
 
 pub use self::bands::Bands;
 pub use self::learned::{Direction, Learned};
+pub use self::plan::{
+    MAX_REVOLUTIONS, MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan,
+};
 pub use self::refusal::Refusal;
 pub use self::report::{
     Disagreement, MAX_RUNS, NOT_SEPARATED, Noise, Report, Requirements, Residual, RunSummary,
     SPEED_RATIO,
-};
-pub use self::run::{
-    MAX_REVOLUTIONS, MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan,
 };
 pub use self::taper::leakage;
 

@@ -53,9 +53,9 @@ impl Reference {
         Some(reference)
     }
 
-    /// Velocity at the start of the revolution, d/clock.
-    pub const fn velocity(&self) -> f64 {
-        self.velocity
+    /// Clocks from the start of the run to that of the revolution.
+    pub const fn elapsed(&self) -> f64 {
+        self.start
     }
 
     /// Goes on to the next revolution; `None` if the motion does not come so far.

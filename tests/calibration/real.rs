@@ -2,7 +2,8 @@
 
 use leadscrew::calibration::{Direction, Learned, Learner, Refusal, Requirements, RunPlan};
 
-use crate::generator::{Dice, Memory, Motion, Shaft, learn, ticks};
+use crate::generator::{Memory, Shaft, learn, ticks};
+use crate::motion::{Dice, Motion};
 use crate::truth::Off;
 
 /// Learns from runs in both directions at each of `speeds` d/tick.

@@ -2,7 +2,8 @@
 
 use leadscrew::calibration::{Learner, MAX_RUNS, Refusal, Requirements, RunPlan, Work};
 
-use crate::generator::{Memory, Motion, Shaft, TIMER_HZ, Tick, learn, ticks};
+use crate::generator::{Memory, Shaft, TIMER_HZ, Tick, learn, ticks};
+use crate::motion::Motion;
 
 const PLAN: RunPlan = RunPlan::steady(12);
 

@@ -5,7 +5,8 @@ use leadscrew::capture::Unwrapper;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene;
 
-use crate::generator::{Memory, Motion, Shaft, Tick, learn, ticks};
+use crate::generator::{Memory, Shaft, Tick, learn, ticks};
+use crate::motion::Motion;
 use crate::truth::Off;
 
 const PLAN: RunPlan = RunPlan::steady(12);
@@ -206,6 +207,8 @@ fn one_speed_and_one_direction_are_accepted_where_asked_for() {
                     && report.hysteresis_a_less_b_d.is_none()
                     && report.noise.is_none()
             );
+            // The halves of a single run stand for its errors.
+            assert!(report.residual.long_wave_d > 0.0 && report.residual.long_wave_d < 0.005);
             assert_eq!(learned.index_front(Direction::Forward), None);
             assert_eq!(
                 learned.phases_d(Direction::Forward),
