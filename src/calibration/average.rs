@@ -35,6 +35,8 @@ pub struct Average {
     segment_sum: i64,
     weight: i32,
     weight_step: i32,
+    /// Weight at the end of the segment; the taper begins at zero.
+    end_weight: i32,
     /// Residual of the first edge of the revolution.
     at_start: i32,
     /// Mean of v_ref/v − 1.
@@ -75,6 +77,7 @@ impl Average {
             segment_sum: 0,
             weight: 0,
             weight_step: 0,
+            end_weight: 0,
             at_start: 0,
             stretch: 0.0,
             out_of_range: false,
@@ -172,14 +175,14 @@ impl Average {
         self.segment_end = to;
         self.triple_end = from.wrapping_add(3);
         self.segment_sum = 0;
-        let place =
-            |number: u32| f64::from(number) / f64::from(self.edges) + f64::from(self.revolution);
+        let end = f64::from(self.revolution) + f64::from(to) / f64::from(self.edges);
         let sign = if self.backward { -1 } else { 1_i32 };
-        let begin = self.taper.at(place(from)).wrapping_mul(sign);
-        let end = self.taper.at(place(to)).wrapping_mul(sign);
+        let begin = self.end_weight;
+        self.end_weight = self.taper.at(end).wrapping_mul(sign);
         self.weight = begin;
+        let rise = self.end_weight.wrapping_sub(begin);
         let length = to.wrapping_sub(from).cast_signed();
-        self.weight_step = end.wrapping_sub(begin).checked_div(length).unwrap_or(0);
+        self.weight_step = rise.checked_div(length).unwrap_or(0);
     }
 
     /// Adds the mean of the segment to the difference of the halves.

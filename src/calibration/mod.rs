@@ -28,8 +28,9 @@
 //! tells) and is the first one at or after the front of the index pulse in forward motion, or in backward motion
 //! where there was no other run.
 //!
-//! Floating point is used outside the edges only: this runs in thread mode, not in the tick. Work memory is 6 bytes
-//! an edge and the [`Learner`], below 64 KiB for 10 000 edges.
+//! Edges are averaged in integers, floating point comes once a segment: this runs in thread mode, not in the tick.
+//! Work memory is 6 bytes an edge and the [`Learner`], below 64 KiB for 10 000 edges; the end of a run and the end of
+//! all take some 10 KiB of stack besides.
 
 mod average;
 mod bands;
@@ -52,9 +53,7 @@ use crate::capture::Observation;
 
 pub use self::bands::Bands;
 pub use self::learned::{Direction, Learned};
-pub use self::plan::{
-    MAX_REVOLUTIONS, MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan,
-};
+pub use self::plan::{MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan};
 pub use self::refusal::Refusal;
 pub use self::report::{
     Disagreement, MAX_RUNS, NOT_SEPARATED, Noise, Report, Requirements, Residual, RunSummary,
@@ -128,7 +127,7 @@ impl<'w> Learner<'w> {
     /// Begins a run; one under way is dropped.
     ///
     /// # Errors
-    /// [`Refusal`] for too few or too many revolutions, or a run too many. Runs before are kept.
+    /// [`Refusal`] for too few revolutions, or a run too many. Runs before are kept.
     pub fn begin_run(&mut self, plan: RunPlan) -> Result<(), Refusal> {
         plan.check()?;
         self.combination.check_room()?;

@@ -5,8 +5,6 @@ use super::taper::ORDER;
 
 /// Fewest revolutions that an average is made of.
 pub const MIN_REVOLUTIONS: u32 = 12;
-/// Most revolutions of a run.
-pub const MAX_REVOLUTIONS: u32 = 1000;
 /// Revolutions at the beginning that give the speed.
 pub const MEASURING_REVOLUTIONS: u32 = 2;
 /// How the shaft moves in a run.
@@ -23,7 +21,7 @@ pub enum RunMotion {
 pub struct RunPlan {
     /// How the shaft moves.
     pub motion: RunMotion,
-    /// Revolutions to average over, 12 to 1 000; of these the largest multiple of 4 is used. The run takes
+    /// Revolutions to average over, at least 12; of these the largest multiple of 4 is used. The run takes
     /// three more: up to the index, and two to measure the speed.
     pub revolutions: u32,
     /// Most that the duration of a revolution may differ from what the first ones gave, as a part of it.
@@ -57,7 +55,7 @@ impl RunPlan {
     }
 
     pub(super) const fn check(&self) -> Result<(), Refusal> {
-        if self.revolutions < MIN_REVOLUTIONS || self.revolutions > MAX_REVOLUTIONS {
+        if self.revolutions < MIN_REVOLUTIONS {
             return Err(Refusal::TooFewRevolutions {
                 found: self.revolutions,
                 needed: MIN_REVOLUTIONS,

@@ -22,6 +22,16 @@ pub struct Requirements {
     pub max_edge_residual_d: f64,
 }
 
+impl Requirements {
+    /// Takes what there is; [`Report::check`] then tells what it does not satisfy.
+    pub const NONE: Self = Self {
+        two_speeds: false,
+        both_directions: false,
+        max_disagreement_d: f64::INFINITY,
+        max_edge_residual_d: f64::INFINITY,
+    };
+}
+
 impl Default for Requirements {
     /// Two speeds, both directions, 0.01 d in a harmonic, 0.01 d an edge.
     fn default() -> Self {
@@ -150,7 +160,10 @@ impl Report {
     }
 
     /// Refuses what does not satisfy the requirements.
-    pub(super) fn check(&self, requirements: &Requirements) -> Result<(), Refusal> {
+    ///
+    /// # Errors
+    /// [`Refusal`] of the first requirement that is not met.
+    pub fn check(&self, requirements: &Requirements) -> Result<(), Refusal> {
         let one_direction = self.hysteresis_a_less_b_d.is_none();
         if requirements.both_directions && one_direction {
             return Err(Refusal::OneDirection);

@@ -202,6 +202,10 @@ fn one_speed_and_one_direction_are_accepted_where_asked_for() {
         .unwrap();
         learner.finish(requirements).map(|learned| {
             let report = learned.report();
+            assert_eq!(
+                report.check(&Requirements::default()),
+                Err(Refusal::OneDirection)
+            );
             assert!(
                 report.one_speed
                     && report.hysteresis_a_less_b_d.is_none()
