@@ -5,6 +5,9 @@ use super::report::Report;
 /// Fractional bits of a learned error.
 const ERROR_FRAC: i32 = 12;
 
+/// Fractional bits of a placement.
+const PLACEMENT_FRAC: i32 = 16;
+
 /// Direction of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
@@ -19,7 +22,7 @@ pub enum Direction {
 pub struct Directional {
     /// Mean error of the edges k with k mod 4 = 0, 1, 2, 3, d; their mean is zero.
     pub phases_d: [f64; 4],
-    /// Count latched at the front of the index pulse, relative to boundary 0.
+    /// Count latched at the front of the index pulse, relative to boundary 0: within a few lines.
     pub front: i32,
 }
 
@@ -51,6 +54,23 @@ impl Learned<'_> {
         self.errors.get(edge).copied().unwrap_or(0)
     }
 
+    /// Error of edge `edge` with its phase, the mean of the directions that are known, Q.16 d: what an encoder map
+    /// is made of.
+    #[must_use]
+    pub fn placement(&self, edge: usize) -> i32 {
+        let of_phase =
+            |direction: &Directional| direction.phases_d.get(edge % 4).copied().unwrap_or(0.0);
+        let known = || self.directions.iter().flatten();
+        let phase = known().map(of_phase).sum::<f64>() / known().count().max(1) as f64;
+        to_q16(self.error_d(edge) + phase)
+    }
+
+    /// As [`Self::phases_d`], Q.16 d.
+    #[must_use]
+    pub fn phases(&self, direction: Direction) -> [i32; 4] {
+        self.phases_d(direction).map(to_q16)
+    }
+
     /// Mean error of the edges k with k mod 4 = 0, 1, 2, 3 in a direction, d; their mean is zero. A direction
     /// without a run has those of the other.
     #[must_use]
@@ -67,13 +87,13 @@ impl Learned<'_> {
     ///
     /// In use boundary 0 is the multiple of 4 nearest to the latched count less this.
     #[must_use]
-    pub fn index_front(&self, direction: Direction) -> Option<i32> {
+    pub fn index_front(&self, direction: Direction) -> Option<i16> {
         let [forward, backward] = self.directions;
         match direction {
             Direction::Forward => forward,
             Direction::Backward => backward,
         }
-        .map(|known| known.front)
+        .map(|known| known.front as i16)
     }
 
     /// What the map is worth.
@@ -81,4 +101,8 @@ impl Learned<'_> {
     pub const fn report(&self) -> &Report {
         &self.report
     }
+}
+
+fn to_q16(error_d: f64) -> i32 {
+    libm::round(libm::ldexp(error_d, PLACEMENT_FRAC)) as i32
 }

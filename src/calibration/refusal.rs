@@ -113,6 +113,15 @@ pub enum Refusal {
         /// Number of that run, from 0.
         run: usize,
     },
+    /// A run differs from those before in short waves.
+    LinesDisagree {
+        /// Number of the run, from 0.
+        run: usize,
+        /// Difference in waves shorter than the 32nd part of a revolution, d rms.
+        difference_d: f64,
+        /// Largest difference allowed, d.
+        limit_d: f64,
+    },
     /// Edges do not repeat well enough.
     ResidualTooLarge {
         /// Estimated error of an edge of the map, d rms.
@@ -208,6 +217,15 @@ impl fmt::Display for Refusal {
                 f,
                 "run {run} differs by {difference_d:.3} d at {order} cycles a revolution, allowed are {limit_d:.3} d: \
                  the motion trembles there; learn anew at another speed (some 20 % off) or over more revolutions"
+            ),
+            Self::LinesDisagree {
+                run,
+                difference_d,
+                limit_d,
+            } => write!(
+                f,
+                "run {run} differs by {difference_d:.3} d in short waves, allowed are {limit_d:.3} d: the motion hums, or \
+                 the lines change with speed; learn anew at another speed (a few % off)"
             ),
             Self::ResidualTooLarge {
                 residual_d,

@@ -16,7 +16,8 @@ pub struct Requirements {
     pub two_speeds: bool,
     /// Runs in both directions: without them the hysteresis is unknown.
     pub both_directions: bool,
-    /// Most that a run may differ from the mean of all in one harmonic, d.
+    /// Most that a run may differ from the mean of all in one harmonic up to 32, and from the runs before in
+    /// shorter waves, rms, d.
     pub max_disagreement_d: f64,
     /// Largest error of an edge of the map by what does not repeat, d rms.
     pub max_edge_residual_d: f64,
@@ -190,6 +191,7 @@ impl Report {
                 run,
             });
         }
+        self.check_lines(limit_d)?;
         let residual_d = self.residual.edge_sigma_d;
         let limit_d = requirements.max_edge_residual_d;
         if residual_d > limit_d {
@@ -197,6 +199,22 @@ impl Report {
                 residual_d,
                 limit_d,
             });
+        }
+        Ok(())
+    }
+
+    /// Refuses runs that differ in short waves from those before.
+    fn check_lines(&self, limit_d: f64) -> Result<(), Refusal> {
+        for (run, summary) in self.runs().iter().enumerate() {
+            let off = summary.less_earlier_runs.unwrap_or_default();
+            let difference_d = off.lines.max(off.edges);
+            if difference_d > limit_d {
+                return Err(Refusal::LinesDisagree {
+                    run,
+                    difference_d,
+                    limit_d,
+                });
+            }
         }
         Ok(())
     }

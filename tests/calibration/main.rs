@@ -6,4 +6,5 @@ mod motion;
 mod real;
 mod refusals;
 mod runs;
+mod simulator;
 mod truth;

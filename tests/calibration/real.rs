@@ -171,6 +171,34 @@ fn a_tremble_in_step_with_the_shaft_at_one_speed_shows_and_is_refused() {
 }
 
 #[test]
+fn a_hum_in_step_with_the_shaft_at_one_speed_shows_in_short_waves() {
+    // 300 Hz: 36.0 times a revolution at 83.3 d/tick, 45.0 times at 66.7, 39.5 times at 76.
+    let learn_at = |speeds: [f64; 2]| {
+        let shaft = Shaft::real(2);
+        let mut memory = Memory::new(shaft.edges());
+        let mut learner = memory.learner();
+        for (seed, velocity) in (1..).zip([speeds[0], -speeds[1]]) {
+            let motion = Motion {
+                wobble_d: 0.05,
+                wobble_ticks: 10.0 / 3.0,
+                ..Motion::steady(velocity)
+            };
+            let run = ticks(&shaft, motion, 40, seed);
+            learn(&mut learner, RunPlan::steady(40), run).unwrap();
+        }
+        let finished = learner.finish(&Requirements::default());
+        finished.map(|learned| Off::new(&learned, &shaft, Direction::Forward).rms())
+    };
+    let refused = learn_at([83.3, 66.7]).unwrap_err();
+    assert!(
+        matches!(refused, Refusal::LinesDisagree { run: 1, .. }),
+        "{refused}"
+    );
+    let off = learn_at([92.3, 76.0]).unwrap();
+    assert!(off < 0.001, "{off}");
+}
+
+#[test]
 fn a_coast_down_gives_the_map_whatever_the_damping() {
     // Constant, mixed, proportional to speed; both wheels slow by a tenth and more.
     for (deceleration, damping) in [(0.006, 0.0), (0.003, 2e-5), (0.0, 4e-5)] {
