@@ -16,6 +16,8 @@
 //! it. [`axis`] puts them together into one pure step; [`params`] makes its configuration from
 //! physical units, by the conversions in [`units`].
 //!
+//! Outside the tick, [`calibration`] learns where the encoder's edges really lie.
+//!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
 //! counters wrap by type and are unwrapped in one place, everything else saturates or is bounded by
 //! an argument written beside it. Sums that are so bounded use wrapping operations, which cannot panic.
@@ -38,6 +40,7 @@
 )]
 
 pub mod axis;
+pub mod calibration;
 pub mod capture;
 pub mod controller;
 pub mod edges;
