@@ -19,7 +19,7 @@ pub const ESTIMATORS: [&str; 4] = ["difference", "exponential", "simple", "gauss
 /// One stage after the other.
 pub struct Staged {
     unwrapper: Unwrapper,
-    edges: EdgeReader,
+    edges: EdgeReader<'static>,
     estimators: [Estimator; 4],
     trajectory: Trajectory,
     controller: Controller,
@@ -94,6 +94,7 @@ impl Staged {
         let Some(observation) = observation else {
             return;
         };
+        self.edges.note(&observation);
         let evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
