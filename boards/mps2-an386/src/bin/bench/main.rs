@@ -6,6 +6,7 @@
 #![no_main]
 
 mod adversary;
+mod edges;
 mod samples;
 mod simulator;
 mod staged;
@@ -37,6 +38,7 @@ fn main() -> ! {
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
     adversary::run(counter)?;
+    edges::run(counter)?;
     simulator::run(counter)
 }
 
