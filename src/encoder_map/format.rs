@@ -19,11 +19,11 @@
 //! | 64 + 2 B | N | a byte an edge: error in steps + 128 (full only) |
 //! | end − 4 | 4 | CRC-32 (ISO-HDLC, as of zip) of all before it |
 
-use core::fmt;
 use core::num::NonZeroU32;
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
+use super::error::MapError;
 use super::{BASE_SPACING, EDGES, EXACT_FRAC, EncoderMap, Form, Residual};
 
 pub(super) const MAGIC: [u8; 4] = *b"LSEM";
@@ -78,74 +78,6 @@ pub const fn image_len(edges: u32, form: Form) -> usize {
         .wrapping_add(form.byte_count(edges))
         .wrapping_add(CHECKSUM)
 }
-
-/// Why an image was refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MapError {
-    /// The image ends before the map does.
-    Cut {
-        /// Bytes given.
-        given: usize,
-        /// Bytes of the map, as far as is known.
-        needed: usize,
-    },
-    /// The image does not begin with the magic.
-    NotAMap,
-    /// A map of another version.
-    Version {
-        /// Its version.
-        version: u16,
-    },
-    /// A field out of range.
-    Field {
-        /// Offset of the field in the image.
-        offset: usize,
-        /// What the field is.
-        name: &'static str,
-        /// What it may be.
-        allowed: &'static str,
-    },
-    /// The image was changed since it was made.
-    Checksum {
-        /// Checksum that it carries.
-        stated: u32,
-        /// Checksum of its bytes.
-        computed: u32,
-    },
-}
-
-impl fmt::Display for MapError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Cut { given, needed } => write!(
-                f,
-                "the encoder map is cut off: {given} bytes of at least {needed}; write it anew"
-            ),
-            Self::NotAMap => {
-                f.write_str("this is no encoder map: it must begin with the four letters LSEM")
-            }
-            Self::Version { version } => write!(
-                f,
-                "the encoder map is of version {version}, expected {VERSION}: learn it anew"
-            ),
-            Self::Field {
-                offset,
-                name,
-                allowed,
-            } => write!(
-                f,
-                "{name} at byte {offset} of the encoder map is out of range: allowed {allowed}; learn it anew"
-            ),
-            Self::Checksum { stated, computed } => write!(
-                f,
-                "the encoder map is damaged: its checksum is {stated:#010x}, that of its bytes {computed:#010x}; \
-                 write it anew"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for MapError {}
 
 /// Reads an image from front to back.
 struct Reader<'m> {

@@ -3,7 +3,7 @@
 //! An encoder's edges lie beside their places by a tenth of a discrete and more, the same way in every
 //! revolution. An [`EncoderMap`] is a view of a byte image (flash or file) that says by how much, for each
 //! edge and for either direction; [`tie`] finds by the index pulse which edge is which; [`format`] is the
-//! image itself, [`encode`] makes it from measured errors.
+//! image itself, [`encode`] makes it from measured errors, [`error`] says what kept it from that.
 //!
 //! Boundary k of the count, passed in direction D, lies at k + e d with e the sum of
 //!
@@ -17,12 +17,13 @@
 //! found the phases of any map hold all the same, since the two low bits of the count tell the phase.
 
 pub mod encode;
+pub mod error;
 pub mod format;
 pub mod tie;
 
 use core::num::NonZeroU32;
 
-use self::format::MapError;
+use self::error::MapError;
 
 /// Edges from one entry of the base to the next.
 pub const BASE_SPACING: u32 = 64;

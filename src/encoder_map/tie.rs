@@ -7,11 +7,14 @@
 //! comes a count early or late does not matter.
 //!
 //! ```text
-//!              index                    index disagrees: slip
-//!  Unfound ───────────► Tied ◄─────────────────────────────► Rejected ◄──┐
-//!                         │    two indexes in a row agree        │       │
-//!                         └────────► OffPhase ◄──────────────────┘       │
-//!               half a line off          └─────── on the line again ─────┘
+//!           an index                  an index disagrees: slip
+//! Unfound ───────────► Tied ─────────────────────────────────► Rejected
+//!                       │ ◄───────────────────────────────────    ▲ │
+//!                       │            it agrees with the last      │ │
+//!                       │                                         │ │
+//!                       └─────────────► OffPhase ◄────────────────│─┘
+//!                   half a line off: slip   └─────────────────────┘
+//!                                             on the lines again
 //! ```
 //!
 //! In [`MapState::Unfound`] and [`MapState::Rejected`] the phases of the map still hold, since the count tells

@@ -1,7 +1,8 @@
 //! What is no map is refused, with a reason.
 
-use leadscrew::encoder_map::encode::{EncodeError, MapContent, encode};
-use leadscrew::encoder_map::format::{MapError, image_len};
+use leadscrew::encoder_map::encode::{MapContent, encode};
+use leadscrew::encoder_map::error::{EncodeError, MapError};
+use leadscrew::encoder_map::format::image_len;
 use leadscrew::encoder_map::{EncoderMap, Form, Residual};
 use leadscrew_hal_mock::encoder::EncoderModel;
 
