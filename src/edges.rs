@@ -256,3 +256,18 @@ fn sum_of_ages(now: u32, times: &[u32]) -> u64 {
         })
         .fold(0, |total, sum| total.wrapping_add(u64::from(sum)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_mean;
+
+    #[test]
+    fn a_mean_error_is_rounded_to_nearest_on_both_sides() {
+        for (sum, count, mean) in [(7, 3, 2), (8, 3, 3), (7, 2, 4), (0, 5, 0), (1, 1, 1)] {
+            assert_eq!(rounded_mean(sum, count), mean);
+            assert_eq!(rounded_mean(-sum, count), -mean);
+        }
+        let largest = 11 * 65_536 * 2047;
+        assert_eq!(rounded_mean(-largest, 2047), -11 * 65_536);
+    }
+}
