@@ -3,6 +3,8 @@
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::controller::{Controller, FollowingError};
 use crate::edges::EdgeReader;
+use crate::encoder_map::EncoderMap;
+use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::{Estimate, Estimator, Evidence};
 use crate::hal::Capture;
 use crate::output::{ActiveLimits, Output};
@@ -44,11 +46,11 @@ pub struct Outputs {
     pub setpoint: Setpoint,
 }
 
-/// One axis.
+/// One axis; `'m` is how long its encoder map lives.
 #[derive(Clone, Debug)]
-pub struct Axis {
+pub struct Axis<'m> {
     unwrapper: Unwrapper,
-    edges: EdgeReader,
+    edges: EdgeReader<'m>,
     estimator: Estimator,
     trajectory: Trajectory,
     controller: Controller,
@@ -60,8 +62,8 @@ pub struct Axis {
     outputs: Outputs,
 }
 
-impl Axis {
-    /// An axis that is not enabled.
+impl<'m> Axis<'m> {
+    /// An axis that is not enabled, without an encoder map.
     #[must_use]
     pub fn new(config: AxisConfig) -> Self {
         Self {
@@ -82,6 +84,7 @@ impl Axis {
         let tick = self.tick;
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
+        self.edges.note(&observation);
         let position = observation.position();
         if !(inputs.enable && self.outputs.enabled) {
             self.begin(position);
@@ -135,9 +138,9 @@ impl Axis {
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last.
+    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
     pub fn reconfigure(&mut self, config: AxisConfig) {
-        self.edges = EdgeReader::new(config.edges);
+        self.edges.reconfigure(config.edges);
         if config.estimator != self.config.estimator {
             self.estimator = Estimator::new(config.estimator);
             self.estimator.prime(self.outputs.estimate.velocity);
@@ -146,6 +149,24 @@ impl Axis {
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.config = config;
+    }
+
+    /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
+    /// was tied.
+    pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
+        self.edges.set_map(map);
+    }
+
+    /// How far the encoder map can be used; `None` without one.
+    #[must_use]
+    pub fn map_state(&self) -> Option<MapState> {
+        self.edges.map_state()
+    }
+
+    /// What the indexes showed since the map was set.
+    #[must_use]
+    pub fn map_health(&self) -> MapHealth {
+        self.edges.map_health()
     }
 
     /// What the last tick gave.

@@ -5,8 +5,12 @@
 //! right to the noise of an edge over √n; where the hardware keeps one stamp, the last edge is the
 //! sample. A tick whose edges do not explain its count (a reversal within it, edges lost) gives what is
 //! certain: the last edge if the count moved and the direction is known, else nothing.
+//!
+//! With an encoder map an edge stands for the place where it really lies, as far as the map knows it.
 
 use crate::capture::{EdgeTimes, Observation};
+use crate::encoder_map::tie::{MapHealth, MapState, MapTie};
+use crate::encoder_map::{Direction, EncoderMap, Residual};
 use crate::uncertainty::{EdgeErrors, EdgeNoise};
 use crate::units::{Position, RangeError, TICK_HZ, TIMER_HZ, checked};
 
@@ -20,7 +24,7 @@ pub const MAX_SPAN_TICKS: u32 = 8;
 /// A place of the shaft and the time at which it was there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeSample {
-    /// Place, d: the mean boundary that the edges stand for.
+    /// Place, d: the mean boundary that the edges stand for, with the mean of their errors by the map.
     pub position: Position,
     /// How long before the sampling instant, ticks.
     pub age: Span,
@@ -132,21 +136,93 @@ const REST_BITS: u32 = 20;
 
 /// Reads the edges of each tick.
 #[derive(Clone, Debug)]
-pub struct EdgeReader {
+pub struct EdgeReader<'m> {
     config: EdgeConfig,
+    tie: Option<MapTie<'m>>,
+    /// Noise of the edges where the map is in use.
+    mapped: EdgeNoise,
 }
 
-impl EdgeReader {
-    /// A reader.
+impl<'m> EdgeReader<'m> {
+    /// A reader without a map.
     #[must_use]
     pub const fn new(config: EdgeConfig) -> Self {
-        Self { config }
+        Self {
+            config,
+            tie: None,
+            mapped: config.noise,
+        }
+    }
+
+    /// The same with a map, which waits for its index.
+    #[must_use]
+    pub fn with_map(mut self, map: EncoderMap<'m>) -> Self {
+        self.set_map(Some(map));
+        self
+    }
+
+    /// Takes a map, which waits for its index, or does without. Outside the tick.
+    pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
+        self.tie = map.map(MapTie::new);
+        self.weigh_map();
+    }
+
+    /// Takes another configuration; the map stays tied. Outside the tick.
+    pub fn reconfigure(&mut self, config: EdgeConfig) {
+        self.config = config;
+        self.weigh_map();
+    }
+
+    /// What the map leaves of the edges' places.
+    fn weigh_map(&mut self) {
+        if let Some(tie) = &self.tie {
+            let Residual {
+                short_wave_d,
+                slope,
+                curvature_per_d,
+                ..
+            } = *tie.map().residual();
+            self.mapped = self.config.noise.with_placement(
+                f64::from(short_wave_d),
+                f64::from(slope),
+                f64::from(curvature_per_d),
+            );
+        }
     }
 
     /// How well the edges are known.
     #[must_use]
-    pub const fn noise(&self) -> &EdgeNoise {
-        &self.config.noise
+    pub fn noise(&self) -> &EdgeNoise {
+        match &self.tie {
+            Some(tie) if tie.state() == MapState::Tied => &self.mapped,
+            _ => &self.config.noise,
+        }
+    }
+
+    /// The map in use.
+    #[must_use]
+    pub fn map(&self) -> Option<&EncoderMap<'m>> {
+        self.tie.as_ref().map(MapTie::map)
+    }
+
+    /// How far the map can be used; `None` without one.
+    #[must_use]
+    pub fn map_state(&self) -> Option<MapState> {
+        self.tie.as_ref().map(MapTie::state)
+    }
+
+    /// What the indexes showed since the map was set; without one, nothing.
+    #[must_use]
+    pub fn map_health(&self) -> MapHealth {
+        self.tie.as_ref().map(MapTie::health).unwrap_or_default()
+    }
+
+    /// Takes notice of a tick, once and before its edges are read.
+    #[inline]
+    pub fn note(&mut self, observation: &Observation<'_>) {
+        if let Some(tie) = &mut self.tie {
+            tie.note(observation);
+        }
     }
 
     /// Time from the previous sampling instant to this one.
@@ -156,6 +232,8 @@ impl EdgeReader {
     }
 
     /// The sample that the edges of the tick make; `None` without an edge, or where they do not tell.
+    ///
+    /// The tick is the one last [noted](Self::note).
     #[must_use]
     pub fn sample(&self, observation: &Observation<'_>) -> Option<EdgeSample> {
         match observation.edge_times() {
@@ -167,10 +245,15 @@ impl EdgeReader {
 
     /// The last edge: boundary `count` when going forward, the one above when going backward.
     fn last(&self, observation: &Observation<'_>, age: u32) -> EdgeSample {
-        let above = i64::from(observation.delta < 0);
-        let boundary = observation.count.wrapping_add(above);
+        let direction = Direction::of(observation.delta);
+        let above = i32::from(direction == Direction::Backward);
+        let boundary = observation.count.wrapping_add(i64::from(above));
+        let error = match &self.tie {
+            Some(tie) => tie.error(above, direction),
+            None => 0,
+        };
         EdgeSample {
-            position: Position::from_bits(boundary.wrapping_shl(Position::FRAC_NBITS)),
+            position: place(boundary.wrapping_shl(Position::FRAC_NBITS), error),
             age: self.config.scale.span(age),
             edges: 1,
         }
@@ -185,9 +268,18 @@ impl EdgeReader {
             .wrapping_mul(2)
             .wrapping_sub(i64::from(observation.delta))
             .wrapping_add(1);
+        let error = match &self.tie {
+            Some(tie) => {
+                // From the lowest of them on upwards.
+                let lowest = 1_i32.wrapping_sub(observation.delta.max(0));
+                let direction = Direction::of(observation.delta);
+                rounded_mean(tie.sum(lowest, edges, direction), edges)
+            }
+            None => 0,
+        };
         let [older, newer] = times.map(|times| sum_of_ages(observation.sampled_at as u32, times));
         EdgeSample {
-            position: Position::from_bits(doubled.wrapping_shl(Position::FRAC_NBITS - 1)),
+            position: place(doubled.wrapping_shl(Position::FRAC_NBITS - 1), error),
             age: self
                 .config
                 .scale
@@ -195,6 +287,19 @@ impl EdgeReader {
             edges,
         }
     }
+}
+
+/// A place by the count, Q.16 d, with the error of the encoder there.
+fn place(boundary: i64, error: i32) -> Position {
+    Position::from_bits(boundary.wrapping_add(i64::from(error)))
+}
+
+/// `sum` / `count`, to nearest; |sum| is below 2³¹ by more than `count`, which is 1 to 2 047.
+fn rounded_mean(sum: i32, count: u32) -> i32 {
+    let count = count.cast_signed();
+    let half = count.wrapping_shr(1);
+    let half = if sum < 0 { half.wrapping_neg() } else { half };
+    sum.wrapping_add(half).checked_div(count).unwrap_or(0)
 }
 
 /// Ages below [`MAX_SPAN_TICKS`] of so many edges add up in 32 bits at every clock and rate.
@@ -209,4 +314,19 @@ fn sum_of_ages(now: u32, times: &[u32]) -> u64 {
             now.wrapping_mul(times.len() as u32).wrapping_sub(sum)
         })
         .fold(0, |total, sum| total.wrapping_add(u64::from(sum)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_mean;
+
+    #[test]
+    fn a_mean_error_is_rounded_to_nearest_on_both_sides() {
+        for (sum, count, mean) in [(7, 3, 2), (8, 3, 3), (7, 2, 4), (0, 5, 0), (1, 1, 1)] {
+            assert_eq!(rounded_mean(sum, count), mean);
+            assert_eq!(rounded_mean(-sum, count), -mean);
+        }
+        let largest = 11 * 65_536 * 2047;
+        assert_eq!(rounded_mean(-largest, 2047), -11 * 65_536);
+    }
 }

@@ -9,6 +9,10 @@
 /// 32-bit x4 counter that wraps. Count k means that the shaft is between the boundaries k and k + 1,
 /// x ∈ [k, k+1) d: the boundary between counts k − 1 and k is the same physical edge in both
 /// directions, hysteresis apart.
+///
+/// The two low bits of the count tell the levels A B, as [`crate::quadrature`] counts them: 00, 10, 11, 01 for
+/// 0, 1, 2, 3 modulo 4, so that odd boundaries are edges of A and even ones of B. Boards preset their
+/// counter so; an encoder map goes by it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capture<'a> {
     /// The x4 count at the sampling instant.

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! Read in the order of the path: [`hal`] is the seam to a board, [`quadrature`] decodes where no
-//! hardware does, [`capture`] unwraps, [`estimator`] finds velocity and acceleration, [`setpoint`]
-//! says where to be, [`controller`] what to do about it, [`output`] limits it, [`telemetry`] tells of
+//! hardware does, [`capture`] unwraps, [`edges`] says where the shaft was and when, by [`encoder_map`]
+//! where the encoder's own errors are known, [`estimator`] finds velocity and acceleration, [`setpoint`] says where to be, [`controller`] what to do about it, [`output`] limits it, [`telemetry`] tells of
 //! it. [`axis`] puts them together into one pure step; [`params`] makes its configuration from
 //! physical units, by the conversions in [`units`].
 //!
@@ -44,6 +44,7 @@ pub mod calibration;
 pub mod capture;
 pub mod controller;
 pub mod edges;
+pub mod encoder_map;
 pub mod estimator;
 pub mod hal;
 pub mod output;

@@ -50,6 +50,12 @@ impl Decoder {
         Self { phase: phase(a, b) }
     }
 
+    /// Place of the levels in the forward cycle, 0 to 3: what the two low bits of a count shall be.
+    #[must_use]
+    pub const fn phase(&self) -> u8 {
+        self.phase
+    }
+
     /// Takes the next levels and says what they did to the count.
     pub const fn step(&mut self, a: bool, b: bool) -> Step {
         let next = phase(a, b);

@@ -31,7 +31,7 @@ pub enum Request {
 
 /// The axis, fed by the captures of `E`.
 pub struct AxisControl<E> {
-    axis: Axis,
+    axis: Axis<'static>,
     requests: Consumer<'static, Request>,
     refused: &'static AtomicU32,
     enable: bool,
@@ -41,7 +41,7 @@ pub struct AxisControl<E> {
 impl<E> AxisControl<E> {
     /// `refused` counts the requests that the axis did not take.
     pub const fn new(
-        axis: Axis,
+        axis: Axis<'static>,
         requests: Consumer<'static, Request>,
         refused: &'static AtomicU32,
     ) -> Self {
@@ -113,7 +113,7 @@ mod tests {
         }
     }
 
-    fn axis() -> Axis {
+    fn axis() -> Axis<'static> {
         let drive = DriveModel {
             natural_period_s: 0.09,
             damping: 0.5,
@@ -121,6 +121,7 @@ mod tests {
         let params = AxisParams {
             tick_hz: 1000.0,
             timer_hz: 84e6,
+            encoder: leadscrew::uncertainty::EdgeErrors::default(),
             motion: MotionParams::default(),
             estimator: EstimatorConfig::by_name("simple").unwrap().unwrap(),
             controller: drive.place_poles(35.0).unwrap(),

@@ -155,16 +155,16 @@ impl Script {
 
 /// What a run is made of, at rest.
 #[derive(Clone, Debug)]
-pub struct Setup {
+pub struct Setup<'m> {
     /// The machine.
     pub machine: Machine,
     /// The axis on it, tuned for it.
-    pub axis: Axis,
+    pub axis: Axis<'m>,
     /// The moves.
     pub script: Script,
 }
 
-impl Setup {
+impl Setup<'_> {
     /// `scenario` on the machine `params` with the errors that `seed` draws, by an axis with `estimator`
     /// in its loop.
     ///
@@ -188,11 +188,11 @@ impl Setup {
 
 /// A run on the host: the machine, the axis on it and the script, tick by tick.
 #[derive(Clone)]
-pub struct Simulation {
+pub struct Simulation<'m> {
     /// The machine.
     pub machine: Machine,
     /// The axis.
-    pub axis: Axis,
+    pub axis: Axis<'m>,
     script: Script,
     next_move: usize,
     tick: u32,
@@ -200,7 +200,7 @@ pub struct Simulation {
     digest: TraceDigest,
 }
 
-impl Simulation {
+impl<'m> Simulation<'m> {
     /// A run of what [`Setup::new`] makes of the same arguments.
     ///
     /// # Errors
@@ -221,7 +221,7 @@ impl Simulation {
 
     /// A run of `script` by `axis` on `machine`, both at rest.
     #[must_use]
-    pub fn new(machine: Machine, axis: Axis, script: Script) -> Self {
+    pub fn new(machine: Machine, axis: Axis<'m>, script: Script) -> Self {
         let (outputs, digest) = (Outputs::default(), TraceDigest::new());
         Self {
             machine,

@@ -2,19 +2,21 @@
 
 use leadscrew::capture::{CaptureHealth, Unwrapper};
 use leadscrew::edges::{EdgeConfig, EdgeReader};
+use leadscrew::encoder_map::EncoderMap;
+use leadscrew::encoder_map::tie::{MapHealth, MapState};
 use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, Evidence};
 use leadscrew::hal::Capture;
 use leadscrew::units::Command;
 
 /// Estimators on one encoder.
 #[derive(Clone, Debug)]
-pub struct Listening {
+pub struct Listening<'m> {
     unwrapper: Unwrapper,
-    edges: EdgeReader,
+    edges: EdgeReader<'m>,
     estimators: Vec<Estimator>,
 }
 
-impl Listening {
+impl<'m> Listening<'m> {
     /// Estimators of `configs` behind an edge timer of `scale`.
     #[must_use]
     pub fn new(configs: &[EstimatorConfig], scale: EdgeConfig) -> Self {
@@ -22,6 +24,15 @@ impl Listening {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(scale),
             estimators: configs.iter().copied().map(Estimator::new).collect(),
+        }
+    }
+
+    /// The same with an encoder map.
+    #[must_use]
+    pub fn with_map(self, map: EncoderMap<'m>) -> Self {
+        Self {
+            edges: self.edges.with_map(map),
+            ..self
         }
     }
 
@@ -34,6 +45,7 @@ impl Listening {
         mut take: impl FnMut(usize, Estimate),
     ) -> i64 {
         let observation = self.unwrapper.unwrap(capture);
+        self.edges.note(&observation);
         let evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
@@ -43,6 +55,18 @@ impl Listening {
             take(index, estimator.update(&evidence));
         }
         observation.count
+    }
+
+    /// How far the encoder map can be used; `None` without one.
+    #[must_use]
+    pub fn map_state(&self) -> Option<MapState> {
+        self.edges.map_state()
+    }
+
+    /// What the indexes showed so far.
+    #[must_use]
+    pub fn map_health(&self) -> MapHealth {
+        self.edges.map_health()
     }
 
     /// What went wrong at the encoder so far.

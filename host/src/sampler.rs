@@ -2,6 +2,9 @@
 //!
 //! Tick k samples at k / tick rate from the first timestamp, k = 0 … ⌊T·f⌋; an edge at t ≤ that
 //! instant belongs to it. Instants are compared as integers.
+//!
+//! The count starts at the place of the initial levels in their cycle, 0 to 3, so that its two low bits tell the
+//! levels as the core wants it; totals count from the start.
 
 use leadscrew::hal::{Capture, Latch};
 use leadscrew::quadrature::{Decoder, Step};
@@ -21,7 +24,7 @@ pub struct Totals {
     pub edges: u64,
     /// Simultaneous changes of A and B.
     pub illegal: u64,
-    /// Count at the end.
+    /// Count at the end less that at the start.
     pub final_count: i64,
 }
 
@@ -37,7 +40,9 @@ pub struct Sampler<'a> {
     next_change: usize,
     decoder: Decoder,
     index_level: bool,
-    count: i64,
+    /// Since the start.
+    moved: i64,
+    start: i64,
     times: Vec<u32>,
     totals: Totals,
 }
@@ -50,6 +55,7 @@ impl<'a> Sampler<'a> {
         let spans = u128::from(recording.duration) * tick_microhertz
             / (u128::from(recording.clock_hz) * MICRO as u128);
         let levels = recording.initial;
+        let decoder = Decoder::new(levels.a, levels.b);
         Self {
             recording,
             tick_microhertz,
@@ -57,9 +63,10 @@ impl<'a> Sampler<'a> {
             ticks: u64::try_from(spans).unwrap_or(u64::MAX).saturating_add(1),
             tick: 0,
             next_change: 0,
-            decoder: Decoder::new(levels.a, levels.b),
+            decoder,
             index_level: levels.z,
-            count: 0,
+            moved: 0,
+            start: i64::from(decoder.phase()),
             times: Vec::new(),
             totals: Totals::default(),
         }
@@ -75,6 +82,12 @@ impl<'a> Sampler<'a> {
     #[must_use]
     pub const fn timer_hz(&self) -> u64 {
         self.timer_hz
+    }
+
+    /// Count of the captures at the start, 0 to 3.
+    #[must_use]
+    pub const fn start_count(&self) -> i64 {
+        self.start
     }
 
     /// The capture of the next tick, or `None` at the end.
@@ -94,7 +107,7 @@ impl<'a> Sampler<'a> {
             }
             if change.levels.z && !self.index_level {
                 index = Some(Latch {
-                    count: self.count as u32,
+                    count: self.count(),
                     time: at,
                 });
             }
@@ -103,7 +116,7 @@ impl<'a> Sampler<'a> {
         let sampled_at = self.instant();
         self.tick += 1;
         Some(Capture {
-            count: self.count as u32,
+            count: self.count(),
             sampled_at,
             last_edge_at: self.times.last().copied(),
             edges: [&self.times, &[]],
@@ -122,7 +135,7 @@ impl<'a> Sampler<'a> {
             self.decode(change);
         }
         Totals {
-            final_count: self.count,
+            final_count: self.moved,
             ..self.totals
         }
     }
@@ -138,9 +151,14 @@ impl<'a> Sampler<'a> {
         })
     }
 
+    /// The count as the hardware's counter would show it.
+    const fn count(&self) -> u32 {
+        (self.start + self.moved) as u32
+    }
+
     fn decode(&mut self, change: Change) -> Step {
         let step = self.decoder.step(change.levels.a, change.levels.b);
-        self.count += i64::from(step.counts());
+        self.moved += i64::from(step.counts());
         match step {
             Step::None => {}
             Step::Illegal => self.totals.illegal += 1,

@@ -32,15 +32,20 @@ struct Event {
     index_rises: bool,
 }
 
-/// A shaft's walk in steps of −1, 0, +1 or 2 (an illegal one) places with the level of Z, at random
+/// A shaft's walk from place `start` in the cycle of the levels, 0 to 3, in steps of −1, 0, +1 or 2 (an illegal one) places with the level of Z, at random
 /// distances in time; and what each step must come to.
-fn walk(clock_hz: u64, steps: &[(u64, i64, bool)], tail: u64) -> (Recording, Vec<Event>) {
+fn walk(
+    clock_hz: u64,
+    start: i64,
+    steps: &[(u64, i64, bool)],
+    tail: u64,
+) -> (Recording, Vec<Event>) {
     let levels_at = |place: i64, z| {
         let (a, b) = [(false, false), (true, false), (true, true), (false, true)]
             [place.rem_euclid(4) as usize];
         Levels { a, b, z }
     };
-    let (mut time, mut place, mut count, mut high) = (0, 0, 0, false);
+    let (mut time, mut place, mut count, mut high) = (0, start, start, false);
     let (mut changes, mut events) = (Vec::new(), Vec::new());
     for &(gap, step, z) in steps {
         time += gap;
@@ -65,7 +70,7 @@ fn walk(clock_hz: u64, steps: &[(u64, i64, bool)], tail: u64) -> (Recording, Vec
     let recording = Recording {
         clock_hz,
         duration: time + tail,
-        initial: Levels::default(),
+        initial: levels_at(start, false),
         changes,
     };
     (recording, events)
@@ -102,6 +107,7 @@ proptest! {
     fn every_edge_belongs_to_the_first_tick_that_is_not_before_it(
         clock in 0..CLOCKS_HZ.len(),
         rate in 0..RATES_MICROHERTZ.len(),
+        start in 0..4_i64,
         // Gaps in fractions of a tick, so that every rate sees ticks with none, one and many.
         steps in prop::collection::vec((1..3000_u64, -1..=2_i64, any::<bool>()), 0..200),
         tail in 0..3000_u64,
@@ -117,13 +123,14 @@ proptest! {
             .take(most)
             .map(|(gap, step, z)| ((gap % gaps + 1) * scale, step, z))
             .collect();
-        let (recording, events) = walk(clock_hz, &steps, tail % gaps * scale);
+        let (recording, events) = walk(clock_hz, start, &steps, tail % gaps * scale);
         let duration = u128::from(recording.duration) * u128::from(rate);
         let per_tick = u128::from(clock_hz) * 1_000_000;
 
         let mut sampler = Sampler::new(&recording, rate as f64 / 1e6);
         prop_assert_eq!(u128::from(sampler.ticks()), duration / per_tick + 1);
-        let (mut tick, mut told, mut before) = (0_u128, 0, 0);
+        prop_assert_eq!(sampler.start_count(), start);
+        let (mut tick, mut told, mut before) = (0_u128, 0, start);
         let mut unwrapper = Unwrapper::new();
         let mut sampled_before = 0;
         while let Some(capture) = sampler.next_capture() {
@@ -159,7 +166,7 @@ proptest! {
             Totals {
                 edges: count(|event| event.edge),
                 illegal: count(|event| event.illegal),
-                final_count: events.last().map_or(0, |event| event.count),
+                final_count: events.last().map_or(0, |event| event.count - start),
             }
         );
     }

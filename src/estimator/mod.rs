@@ -31,8 +31,8 @@ use crate::units::{Acceleration, Command, Lag, Position, RangeError, Variance, V
 pub struct Evidence<'a> {
     /// Counts and times.
     pub observation: &'a Observation<'a>,
-    /// Reads the edges, for those that use them.
-    pub edges: &'a EdgeReader,
+    /// Reads the edges, for those that use them; it has taken note of the tick.
+    pub edges: &'a EdgeReader<'a>,
     /// What the drive was told for the tick just past; `None` where that is not known, as in a replay, or
     /// the drive was off.
     pub command: Option<Command>,

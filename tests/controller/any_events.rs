@@ -104,7 +104,7 @@ fn event() -> impl Strategy<Value = Event> {
 
 /// An axis, and what its output may be.
 struct Watched {
-    axis: Axis,
+    axis: Axis<'static>,
     limit: Command,
     slew: Command,
     /// Above the limit only on the way down to one newly lowered.

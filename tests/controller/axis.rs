@@ -28,7 +28,7 @@ pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> Ax
     }
 }
 
-fn quiet_axis() -> Axis {
+fn quiet_axis() -> Axis<'static> {
     let gains = Gains {
         position: 0.01,
         integral: 1e-5,

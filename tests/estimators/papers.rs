@@ -143,7 +143,7 @@ fn flywheel_of_the_paper() {
         let sigma = seen.acceleration_error().rms();
         writeln!(
             table,
-            "{:12} {share:22.2} {peak:17.3} {sigma:18.4} {mean:17.5}",
+            "{:12} {share:22.2} {peak:17.3} {sigma:18.6} {mean:17.5}",
             config.name()
         )
         .unwrap();

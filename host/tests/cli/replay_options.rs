@@ -196,6 +196,37 @@ fn counts_cover_the_file_although_ticks_end_before_it() {
 }
 
 #[test]
+fn counts_start_at_zero_whatever_the_levels_at_first() {
+    let folder = Folder::new();
+    let from = |first: i64| {
+        let change = |count: i64| Change {
+            time: (count * 300) as u64,
+            levels: levels_at(first + count),
+        };
+        let recording = Recording {
+            clock_hz: 1_000_000,
+            duration: 60_000,
+            initial: levels_at(first),
+            changes: (1..150).map(change).collect(),
+        };
+        let name = format!("from_{first}.vcd");
+        folder.write(&name, sigrok_vcd(&recording, &["0", "1"]));
+        let report = folder.json(&format!("replay {name} --csv x.csv"));
+        let table = Table::read(&folder.path("x.csv"));
+        let columns = ["count_d", "position_d", "velocity_d_per_tick"];
+        (
+            report["final_count"].clone(),
+            columns.map(|name| table.column(name)),
+        )
+    };
+    let expected = from(0);
+    assert_eq!((&expected.0, expected.1[0][0]), (&149.into(), 0.0));
+    for first in 1..4 {
+        assert_eq!(from(first), expected, "{first}");
+    }
+}
+
+#[test]
 fn both_channels_at_once_are_one_illegal_transition() {
     let folder = Folder::new();
     let mut recording = ramp();

@@ -29,7 +29,7 @@ const OUTSIDE: *mut u32 = 0x4002_8000 as *mut u32;
 #[unsafe(link_section = ".vector_table.interrupts")]
 pub static __INTERRUPTS: [usize; 1] = [0];
 
-struct Shared(UnsafeCell<Option<Axis>>);
+struct Shared(UnsafeCell<Option<Axis<'static>>>);
 
 // SAFETY: the program fills it before `READY`, the tick uses it afterwards; the program then only
 // touches it with interrupts off.
@@ -59,7 +59,7 @@ fn main() -> ! {
 }
 
 /// An axis from parameters that come from outside.
-fn configured() -> Result<Axis, ParamError> {
+fn configured() -> Result<Axis<'static>, ParamError> {
     let number = || f64::from(outside());
     let drive = DriveModel {
         natural_period_s: number(),

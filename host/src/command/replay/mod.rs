@@ -9,6 +9,7 @@ use leadscrew::capture::CaptureHealth;
 use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::uncertainty::EdgeErrors;
+use leadscrew::units::Position;
 
 use super::{
     MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
@@ -115,11 +116,17 @@ impl Replay {
         };
         let mut tracks: Vec<_> = configs.iter().map(track).collect();
         let mut counts = Vec::new();
+        // Told from where the recording starts.
+        let start = sampler.start_count();
+        let start_position = Position::saturating_from_num(start);
         while let Some(capture) = sampler.next_capture() {
             let count = listening.hear(&capture, None, |index, estimate| {
-                tracks[index].estimates.push(estimate);
+                tracks[index].estimates.push(Estimate {
+                    position: estimate.position - start_position,
+                    ..estimate
+                });
             });
-            counts.push(count);
+            counts.push(count - start);
             progress.step();
         }
         Ok(Self {

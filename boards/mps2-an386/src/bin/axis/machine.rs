@@ -14,7 +14,7 @@ use leadscrew_hal_mock::trace::TraceDigest;
 const SEED: u64 = 1;
 
 /// The standard move on the reference machine, exponential smoothing in the loop.
-pub fn standard_move(options: &Options) -> Result<Setup, ScenarioError> {
+pub fn standard_move(options: &Options) -> Result<Setup<'static>, ScenarioError> {
     let scenario = MoveAndBack::standard(f64::from(options.tick_hz));
     let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
     Setup::new(&scenario, &MachineParams::z_16k20f3(), estimator, SEED)

@@ -165,7 +165,7 @@ fn options() -> Options {
 
 /// Hands every interrupt its state; gives the ends of the queues that thread mode holds.
 fn wire(
-    scenario: Setup,
+    scenario: Setup<'static>,
     period: u32,
     ticks: u32,
 ) -> (Producer<'static, Request>, Consumer<'static, Record>) {

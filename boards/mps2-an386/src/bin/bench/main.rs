@@ -7,6 +7,7 @@
 
 mod adversary;
 mod edges;
+mod one_stamp;
 mod samples;
 mod simulator;
 mod staged;
@@ -37,8 +38,9 @@ fn main() -> ! {
 
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
-    edges::run(counter)?;
+    one_stamp::run(counter)?;
     adversary::run(counter)?;
+    edges::run(counter)?;
     simulator::run(counter)
 }
 

@@ -19,7 +19,7 @@ pub const ESTIMATORS: usize = EstimatorConfig::NAMES.len();
 /// One stage after the other.
 pub struct Staged {
     unwrapper: Unwrapper,
-    edges: EdgeReader,
+    edges: EdgeReader<'static>,
     estimators: [Estimator; ESTIMATORS],
     trajectory: Trajectory,
     controller: Controller,
@@ -89,6 +89,7 @@ impl Staged {
         let Some(observation) = observation else {
             return;
         };
+        self.edges.note(&observation);
         let evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
