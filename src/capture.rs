@@ -73,6 +73,7 @@ impl<'a> Observation<'a> {
     /// was lost, and the last one stands at the new count all the same. After an illegal transition the
     /// count itself is in doubt.
     #[must_use]
+    #[inline]
     pub fn edge_times(&self) -> EdgeTimes<'a> {
         if self.edges_complete && self.delta != 0 {
             return EdgeTimes::All(self.capture.edges);

@@ -235,6 +235,7 @@ impl<'m> EdgeReader<'m> {
     ///
     /// The tick is the one last [noted](Self::note).
     #[must_use]
+    #[inline(never)]
     pub fn sample(&self, observation: &Observation<'_>) -> Option<EdgeSample> {
         match observation.edge_times() {
             EdgeTimes::None => None,
@@ -244,6 +245,7 @@ impl<'m> EdgeReader<'m> {
     }
 
     /// The last edge: boundary `count` when going forward, the one above when going backward.
+    #[inline]
     fn last(&self, observation: &Observation<'_>, age: u32) -> EdgeSample {
         let direction = Direction::of(observation.delta);
         let above = i32::from(direction == Direction::Backward);

@@ -35,8 +35,8 @@ pub const PLACE_FRAC: u32 = 30;
 const TIME_FRAC: u32 = 40;
 const SLOPE_FRAC: u32 = 40;
 const CURVATURE_FRAC: u32 = 48;
-/// Fractional bits of v² in (d/tick)².
-const SQUARE_FRAC: u32 = 10;
+/// Fractional bits of v² in (d/tick)²: v is at most 2¹¹.
+const SQUARE_FRAC: u32 = 9;
 
 /// [`EdgeErrors`] as the tick uses them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,15 +127,10 @@ fn scaled(value: f64, frac: u32) -> u32 {
     libm::round(libm::ldexp(value, frac.cast_signed())) as u32
 }
 
-/// v² with [`SQUARE_FRAC`] fractional bits: v below 2¹¹ d/tick.
+/// v² with [`SQUARE_FRAC`] fractional bits.
 const fn square(velocity: i32) -> u32 {
     let size = velocity.unsigned_abs().wrapping_shr(10) as u64;
-    let square = size.wrapping_mul(size).wrapping_shr(20 - SQUARE_FRAC);
-    if square > u32::MAX as u64 {
-        u32::MAX
-    } else {
-        square as u32
-    }
+    size.wrapping_mul(size).wrapping_shr(20 - SQUARE_FRAC) as u32
 }
 
 #[cfg(test)]

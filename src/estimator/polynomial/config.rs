@@ -1,6 +1,6 @@
 //! What is set on the local polynomial estimator.
 
-use super::weights::Weights;
+use super::regular::Regular;
 use super::window::CAPACITY;
 use super::{Answer, GRID_BITS};
 use crate::estimator::{Delay, Lags};
@@ -17,7 +17,7 @@ pub struct Config {
     /// Ticks without an edge after which the axis is at rest, Q24.8.
     pub(super) rest_ticks_q8: u32,
     lags: Lags,
-    pub(super) weights: Weights,
+    pub(super) regular: Regular,
 }
 
 /// Fewest samples that a quadratic goes through; the window widens until it has them.
@@ -70,7 +70,7 @@ impl Config {
                 velocity: of_rest,
                 acceleration: middle,
             },
-            weights: Weights::new(window as usize),
+            regular: Regular::new(window),
         })
     }
 

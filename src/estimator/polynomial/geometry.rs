@@ -34,17 +34,16 @@ pub struct Geometry {
     pub by_spread: Option<Reciprocal>,
     /// Mean time of the samples, steps in Q.8.
     pub middle: i32,
-    /// Variance of the velocity answered, (d/tick)² per d² of a sample, Q4.28.
+    /// Variance of the velocity at the middle, (d/tick)² per d² of a sample, Q4.28.
     pub velocity_gain: u32,
     /// Variance of the acceleration, (d/tick²)² per d² of a sample, Q4.28.
     pub acceleration_gain: u32,
 }
 
 impl Geometry {
-    /// Of samples at times `m`. The velocity will be asked for at `asked` (steps from the origin, Q.8) or, without it, at
-    /// the middle.
     #[inline(never)]
-    pub fn of(m: &Sums, asked: Option<i32>) -> Self {
+    /// Of samples at the times of `m`.
+    pub fn of(m: &Sums) -> Self {
         let uu = wide(m.count, m.t2).wrapping_sub(wide(m.t1, m.t1));
         let u2u = wide(m.count, m.t3).wrapping_sub(wide(m.t1, m.t2));
         let by_uu = Reciprocal::new(uu.cast_unsigned());
@@ -69,7 +68,7 @@ impl Geometry {
         if m.count >= MIN_SAMPLES as i32 && geometry.spread > 0 {
             geometry.by_spread = Some(Reciprocal::new(geometry.spread.cast_unsigned()));
         }
-        geometry.set_gains(m.count, asked);
+        geometry.set_gains(m.count);
         geometry
     }
 
@@ -82,14 +81,14 @@ impl Geometry {
             .wrapping_add(low.wrapping_shr(BETA_FRAC))
     }
 
-    fn set_gains(&mut self, count: i32, asked: Option<i32>) {
+    fn set_gains(&mut self, count: i32) {
         let count = u64::from(count.unsigned_abs());
         self.velocity_gain = self.by_uu.size(count, 2 * GRID_BITS + GAIN_FRAC);
         let Some(by_spread) = self.by_spread else {
             return;
         };
-        let arm = asked
-            .unwrap_or(self.middle)
+        let arm = self
+            .middle
             .wrapping_shr(MIDDLE_FRAC - ARM_FRAC - 1)
             .wrapping_sub(self.beta.wrapping_shr(BETA_FRAC - ARM_FRAC));
         let turned = count.saturating_mul(u64::from(arm.unsigned_abs().saturating_pow(2)));

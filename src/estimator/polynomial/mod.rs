@@ -3,8 +3,8 @@
 //! A sample is a place and the time at which the shaft was there ([`crate::edges`]), so neither the rounding to
 //! whole counts nor jitter of the sampling instant enters. Times are held on a grid of half a tick; what is left of a
 //! sample's time, at most a quarter of a tick, is bridged with the velocity and acceleration found last. Where the
-//! samples stand one a tick, as they do above 1 d/tick, the fit is a weighted sum ([`weights`]); elsewhere the normal
-//! equations are solved, in exact integers ([`fit`]).
+//! samples stand one a tick, as they do above 1 d/tick, sums slide in constant time ([`regular`]); elsewhere the normal
+//! equations are solved anew ([`fit`]); both in exact integers.
 //!
 //! The acceleration is that of the samples' middle. Position and velocity are answered for the middle or,
 //! extrapolated by the quadratic, for the sampling instant ([`Answer`]).
@@ -22,7 +22,7 @@ pub mod config;
 mod fit;
 mod geometry;
 mod ratio;
-mod weights;
+mod regular;
 mod window;
 
 pub use config::Config;
@@ -30,7 +30,7 @@ pub use config::Config;
 use self::fit::{Fit, wide};
 use self::geometry::{GAIN_FRAC, Geometry, MIDDLE_FRAC};
 use self::window::{Sample, Window};
-use super::{Estimate, Evidence, Lags, Variances, saturate, shift_rounded};
+use super::{Estimate, Evidence, Lags, Variances, shift_rounded};
 use crate::capture::Observation;
 use crate::edges::{EdgeSample, MAX_SPAN_TICKS, Span};
 use crate::uncertainty::{EdgeNoise, PLACE_FRAC};
@@ -55,10 +55,11 @@ pub enum Answer {
 }
 
 /// The window and what was found last.
+// The window last: it is large, and the target reaches the first kilobyte by pairs.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Estimator {
     config: Config,
-    window: Window,
     /// Time from the last step of the grid to the sampling instant, in bits of a [`Span`].
     since_step: i32,
     motion: Motion,
@@ -68,6 +69,7 @@ pub struct Estimator {
     dither: Dither,
     /// Velocity to be told until there are samples.
     primed: Option<i32>,
+    window: Window,
 }
 
 /// What the last fit says.
@@ -79,18 +81,36 @@ struct Motion {
     acceleration: i32,
 }
 
-/// What a fit came to; times from the window's origin with [`TIME_FRAC`] fractional bits.
+/// What a fit came to, at the samples' middle.
 struct Found {
-    fit: Fit,
-    /// The fit's origin.
-    origin: i32,
-    /// Mean time of the samples.
-    middle: i32,
+    /// Q.16 d from the count.
+    place: i64,
+    /// Q12.20 d/tick.
+    velocity: i32,
+    /// Q8.24 d/tick².
+    acceleration: i32,
+    /// Time from the middle to the sampling instant, ticks with [`TIME_FRAC`] fractional bits.
+    behind: i32,
     /// It is a quadratic, not a line.
     is_curved: bool,
-    /// Variances per d² of a sample.
+    /// Variance of the velocity per d² of a sample, [`GAIN_FRAC`].
     velocity_gain: u32,
+    /// Variance of the acceleration per d² of a sample, [`GAIN_FRAC`].
     acceleration_gain: u32,
+}
+
+impl Found {
+    /// Variance of the velocity at the sampling instant: at the middle it is independent of the acceleration's.
+    #[inline]
+    fn newest_gain(&self) -> u32 {
+        const COARSE: u32 = TIME_FRAC - 8;
+        let ticks = self.behind.wrapping_shr(COARSE).cast_unsigned();
+        let square = ticks.wrapping_mul(ticks);
+        let of_bend = u64::from(square)
+            .wrapping_mul(u64::from(self.acceleration_gain))
+            .wrapping_shr(16);
+        self.velocity_gain.wrapping_add(of_bend as u32)
+    }
 }
 
 impl Motion {
@@ -109,6 +129,14 @@ struct Silence {
     ticks_q8: u32,
     /// Count when the last sample came; wraps.
     count: i32,
+}
+
+impl Silence {
+    #[inline]
+    fn lengthen(&mut self, by: Span) {
+        let ticks_q8 = by.to_bits().wrapping_shr(Span::FRAC_NBITS - 8);
+        self.ticks_q8 = self.ticks_q8.saturating_add(ticks_q8);
+    }
 }
 
 /// How many of the newest samples are one and the same boundary.
@@ -165,20 +193,29 @@ impl Estimator {
             return self.rest(observation);
         }
         let steps = self.advance(elapsed);
-        let sample = edges
-            .sample(observation)
-            .map(|sample| self.on_grid(observation, elapsed, &sample));
+        let sample = match edges.sample(observation) {
+            Some(sample) => Some(self.on_grid(observation, elapsed, &sample)),
+            None => {
+                self.silence.lengthen(elapsed);
+                None
+            }
+        };
         let base = self.count.wrapping_shl(window::PLACE_FRAC);
-        self.window.tick(&self.config, steps, base, sample);
+        let regular = self.window.tick(&self.config, steps, base, sample);
         if self.is_at_rest() {
             return self.rest(observation);
         }
         self.primed = None;
-        let found = match self.window.regular(&self.config) {
-            Some(step) => self.weigh(step),
-            None => self.fit(),
-        };
-        self.answer(observation, &found, edges.noise())
+        match regular {
+            Some(step) => self.answer(observation, &self.regular(step), edges.noise()),
+            None => self.answer_anywhere(observation, edges.noise()),
+        }
+    }
+
+    /// Samples wherever they stand.
+    #[inline(never)]
+    fn answer_anywhere(&mut self, observation: &Observation<'_>, noise: &EdgeNoise) -> Estimate {
+        self.answer(observation, &self.fit(), noise)
     }
 
     /// Goes on to this tick's sampling instant; steps of the grid since the previous one.
@@ -188,8 +225,6 @@ impl Estimator {
             .since_step
             .wrapping_add(elapsed.to_bits().cast_signed());
         self.since_step = since & ((1 << STEP_BITS) - 1);
-        let passed = elapsed.to_bits().wrapping_shr(Span::FRAC_NBITS - 8);
-        self.silence.ticks_q8 = self.silence.ticks_q8.saturating_add(passed);
         since.wrapping_shr(STEP_BITS)
     }
 
@@ -223,9 +258,11 @@ impl Estimator {
             count: self.count,
         };
         let time = self.since_step.wrapping_sub(age);
+        // Not after the sampling instant: a sample at that very instant would come to stand on either side.
         let step = time
             .wrapping_add(1 << (STEP_BITS - 1))
-            .wrapping_shr(STEP_BITS);
+            .wrapping_shr(STEP_BITS)
+            .min(0);
         let rest = time.wrapping_sub(step.wrapping_shl(STEP_BITS));
         let velocity = if self.window.count() < config::MIN_SAMPLES && self.primed.is_none() {
             observation.delta.wrapping_shl(Velocity::FRAC_NBITS)
@@ -258,13 +295,10 @@ impl Estimator {
         let place = place as i32;
         let apart = place.wrapping_sub(self.dither.place).unsigned_abs();
         let same = edges == 1 && apart < 1 << (Position::FRAC_NBITS - 1);
+        let before = if same { self.dither.samples } else { 0 };
         self.dither = Dither {
             place,
-            samples: if same {
-                self.dither.samples.saturating_add(1)
-            } else {
-                1
-            },
+            samples: before.wrapping_add(1),
         };
     }
 
@@ -310,66 +344,48 @@ impl Estimator {
 
     /// A full window of samples one a tick, the newest at `step` from the origin.
     #[inline]
-    fn weigh(&self, step: i32) -> Found {
-        let weights = &self.config.weights;
-        let count = self.window.count();
-        let [velocity, acceleration] = weights.weigh(self.window.places(), count);
-        let newest = step.wrapping_shl(TIME_FRAC - GRID_BITS);
-        let half = self.config.window_steps.wrapping_sub(STEPS).wrapping_shr(1);
-        let middle = newest.wrapping_sub(half.wrapping_shl(TIME_FRAC - GRID_BITS));
-        let fit = Fit {
-            place: self.newest_place(velocity, acceleration),
+    fn regular(&self, step: i32) -> Found {
+        let regular = &self.config.regular;
+        let ages = self.window.ages();
+        let (velocity, acceleration) = regular.motion(ages);
+        // Half a window less half a tick before the newest sample.
+        let middle = step
+            .wrapping_shl(1)
+            .wrapping_sub(self.config.window_steps)
+            .wrapping_add(STEPS)
+            .wrapping_shl(TIME_FRAC - GRID_BITS - 1);
+        Found {
+            place: regular.place(ages, acceleration),
             velocity,
             acceleration,
-        };
-        let asked = self.asked(middle).wrapping_sub(newest);
-        let [constant, first, second] = weights.velocity_gains;
-        let slope = first.wrapping_add(wide(second, asked).wrapping_shr(TIME_FRAC) as i32);
-        let gain = constant.wrapping_add(wide(slope, asked).wrapping_shr(TIME_FRAC) as i32);
-        Found {
-            fit,
-            origin: newest,
-            middle,
+            behind: self.now().wrapping_sub(middle),
             is_curved: true,
-            velocity_gain: gain.cast_unsigned(),
-            acceleration_gain: weights.acceleration_gain,
+            velocity_gain: regular.velocity_gain,
+            acceleration_gain: regular.acceleration_gain,
         }
     }
 
-    /// The fit's place at the newest sample of a regular window, Q.16 d from the base: the mean place and what lies between.
-    #[inline]
-    fn newest_place(&self, velocity: i32, acceleration: i32) -> i64 {
-        let weights = &self.config.weights;
-        // The mean of 2¹⁷ d has 31 bits; its sum is taken apart so that 32-bit products do.
-        let total = self.window.total();
-        let high =
-            wide((total.wrapping_shr(8)) as i32, 1).wrapping_mul(i64::from(weights.per_sample));
-        let mean = shift_rounded(high, 32 - 8 - 2);
-        let half = self.config.window_steps.wrapping_sub(STEPS).wrapping_shr(1);
-        let way = wide(velocity, half).wrapping_shr(20 - 16 + GRID_BITS);
-        let bent = wide(acceleration, weights.mean_square).wrapping_shr(24);
-        mean.wrapping_add(way).wrapping_sub(bent)
-    }
-
-    /// Samples wherever they stand.
-    #[inline(never)]
     fn fit(&self) -> Found {
         let sums = self.window.sums();
-        let to_time = |q8: i32| q8.wrapping_shl(TIME_FRAC - GRID_BITS - MIDDLE_FRAC);
-        let asked = match self.config.answer {
-            Answer::Centre => None,
-            Answer::Newest => Some(self.now().wrapping_shr(TIME_FRAC - GRID_BITS - MIDDLE_FRAC)),
-        };
-        let geometry = Geometry::of(&sums, asked);
+        let geometry = Geometry::of(&sums);
+        let now = self.now();
         let Motion {
             newest,
             acceleration,
         } = self.motion;
-        let gained = wide(acceleration, self.now()).wrapping_shr(24 + TIME_FRAC - 20) as i32;
+        let gained = wide(acceleration, now).wrapping_shr(24 + TIME_FRAC - 20) as i32;
+        let fit = Fit::new(&sums, &geometry, newest.wrapping_sub(gained), acceleration);
+        let middle = geometry
+            .middle
+            .wrapping_shl(TIME_FRAC - GRID_BITS - MIDDLE_FRAC);
+        let gained = rounded::<{ 24 + TIME_FRAC - 20 }>(fit.acceleration, middle);
+        let velocity = fit.velocity.saturating_add(gained);
+        let way = trapezium(fit.velocity, velocity, middle);
         Found {
-            fit: Fit::new(&sums, &geometry, newest.wrapping_sub(gained), acceleration),
-            origin: 0,
-            middle: to_time(geometry.middle),
+            place: fit.place.wrapping_add(way),
+            velocity,
+            acceleration: fit.acceleration,
+            behind: now.wrapping_sub(middle),
             is_curved: geometry.by_spread.is_some(),
             velocity_gain: geometry.velocity_gain,
             acceleration_gain: geometry.acceleration_gain,
@@ -381,77 +397,73 @@ impl Estimator {
     const fn now(&self) -> i32 {
         self.config
             .window_steps
-            .wrapping_shr(1)
-            .wrapping_shl(TIME_FRAC - GRID_BITS)
+            .wrapping_shl(TIME_FRAC - GRID_BITS - 1)
             .wrapping_add(self.since_step.wrapping_shr(Span::FRAC_NBITS - TIME_FRAC))
     }
 
-    /// The instant asked for, from the window's origin.
-    #[inline]
-    const fn asked(&self, middle: i32) -> i32 {
-        match self.config.answer {
-            Answer::Centre => middle,
-            Answer::Newest => self.now(),
-        }
-    }
-
-    #[inline]
+    #[inline(always)]
     fn answer(
         &mut self,
         observation: &Observation<'_>,
         found: &Found,
         noise: &EdgeNoise,
     ) -> Estimate {
-        let fit = &found.fit;
-        let now = self.now();
-        let behind = to_lag(now.wrapping_sub(found.middle));
-        let at = self.asked(found.middle).wrapping_sub(found.origin);
-        let (lag_x, lag_v) = match self.config.answer {
-            Answer::Centre => (behind, behind),
-            Answer::Newest if found.is_curved => (Lag::ZERO, Lag::ZERO),
-            // A line has no other velocity than that of its middle.
-            Answer::Newest => (Lag::ZERO, behind),
-        };
-        let newest = fit.velocity_at(now.wrapping_sub(found.origin));
+        let behind = found.behind;
+        let gained = rounded::<{ 24 + TIME_FRAC - 20 }>(found.acceleration, behind);
+        let newest = self.within_silence(found.velocity.saturating_add(gained));
         self.motion = Motion {
-            newest: self.within_silence(newest),
-            acceleration: fit.acceleration,
+            newest,
+            acceleration: found.acceleration,
         };
-        let velocity = match self.config.answer {
-            Answer::Centre => fit.velocity_at(at),
-            Answer::Newest => self.motion.newest,
+        let lag = Lag::from_bits(behind.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS));
+        let mut place = observation
+            .count
+            .wrapping_shl(Position::FRAC_NBITS)
+            .wrapping_add(found.place);
+        let (velocity, lag_x, lag_v, gain) = match self.config.answer {
+            Answer::Centre => (found.velocity, lag, lag, found.velocity_gain),
+            Answer::Newest => {
+                place = place.wrapping_add(trapezium(found.velocity, newest, behind));
+                // A line has no other velocity than that of its middle.
+                let lag_v = if found.is_curved { Lag::ZERO } else { lag };
+                (newest, Lag::ZERO, lag_v, found.newest_gain())
+            }
         };
-        let base = observation.count.wrapping_shl(Position::FRAC_NBITS);
+        let variances = self.variances(gain, found.acceleration_gain, noise);
         Estimate {
-            position: Position::from_bits(base.wrapping_add(fit.place_at(at))),
+            position: Position::from_bits(place),
             velocity: Velocity::from_bits(velocity),
-            acceleration: Acceleration::from_bits(fit.acceleration),
+            acceleration: Acceleration::from_bits(found.acceleration),
             lags: Lags {
                 position: lag_x,
                 velocity: lag_v,
-                acceleration: behind,
+                acceleration: lag,
             },
-            variances: self.variances(found, noise),
+            variances,
         }
     }
 
     /// From the noise of a sample, which is that of an edge over the mean number of edges.
     #[inline]
-    fn variances(&self, found: &Found, noise: &EdgeNoise) -> Variances {
+    fn variances(&self, of_velocity: u32, of_acceleration: u32, noise: &EdgeNoise) -> Variances {
+        // Fewer bits, so that 64 samples fit.
+        const SPARE_BITS: u32 = 6;
         let velocity = self.motion.newest;
         let of_sample = noise
             .of_edge(velocity)
-            .saturating_mul(self.window.count() as u32)
+            .wrapping_shr(SPARE_BITS)
+            .wrapping_mul(self.window.count() as u32)
             .checked_div(self.window.edges())
-            .unwrap_or(u32::MAX);
+            .unwrap_or(0);
         let of_samples = |gain: u32| {
             let product = u64::from(of_sample).wrapping_mul(u64::from(gain));
-            Variance::from_bits(product.wrapping_shr(PLACE_FRAC + GAIN_FRAC - Variance::FRAC_NBITS))
+            Variance::from_bits(
+                product.wrapping_shr(PLACE_FRAC + GAIN_FRAC - SPARE_BITS - Variance::FRAC_NBITS),
+            )
         };
         Variances {
-            velocity: of_samples(found.velocity_gain).saturating_add(noise.of_velocity(velocity)),
-            acceleration: of_samples(found.acceleration_gain)
-                .saturating_add(noise.of_acceleration(velocity)),
+            velocity: of_samples(of_velocity).wrapping_add(noise.of_velocity(velocity)),
+            acceleration: of_samples(of_acceleration).wrapping_add(noise.of_acceleration(velocity)),
         }
     }
 
@@ -480,25 +492,15 @@ impl Estimator {
 /// 31 bits.
 const MOST_MOVED: u32 = 6;
 
-/// A time with [`TIME_FRAC`] fractional bits.
-const fn to_lag(time: i32) -> Lag {
-    Lag::from_bits(time.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS))
+/// `a`·`b`/2^`SHIFT`, to nearest, where it fits.
+#[inline]
+const fn rounded<const SHIFT: u32>(a: i32, b: i32) -> i32 {
+    shift_rounded(wide(a, b), SHIFT) as i32
 }
 
-impl Fit {
-    /// Velocity at a time from the fit's origin, Q12.20 d/tick.
-    #[inline]
-    fn velocity_at(&self, time: i32) -> i32 {
-        let gained = shift_rounded(wide(self.acceleration, time), 24 + TIME_FRAC - 20);
-        saturate(i64::from(self.velocity).wrapping_add(gained))
-    }
-
-    /// Place at a time from the fit's origin, Q.16 d from the base.
-    #[inline]
-    fn place_at(&self, time: i32) -> i64 {
-        let half_gained = wide(self.acceleration, time).wrapping_shr(24 + TIME_FRAC - 20 + 1);
-        let mean = saturate(i64::from(self.velocity).wrapping_add(half_gained));
-        let way = shift_rounded(wide(mean, time), 20 + TIME_FRAC - 16);
-        self.place.wrapping_add(way)
-    }
+/// Way, Q.16 d, while the velocity goes evenly from one to the other (Q12.20 d/tick) in a time with [`TIME_FRAC`] bits.
+#[inline]
+const fn trapezium(from: i32, to: i32, time: i32) -> i64 {
+    let mean = from.wrapping_shr(1).wrapping_add(to.wrapping_shr(1));
+    wide(mean, time).wrapping_shr(20 + TIME_FRAC - Position::FRAC_NBITS)
 }

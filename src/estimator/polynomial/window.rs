@@ -1,12 +1,14 @@
 //! The samples of the window.
 
 use super::config::{Config, MIN_SAMPLES};
-use super::fit::{Sums, wide};
+use super::fit::Sums;
+use super::regular::AgeSums;
 
 /// Most samples.
 pub const CAPACITY: usize = 64;
-/// Fractional bits of a place in the window: what 2 047 d/tick go in 64 ticks has 17 bits, and a sign.
-pub const PLACE_FRAC: u32 = 14;
+/// Fractional bits of a place in the window: what 2 047 d/tick go in 64 ticks has 17 bits, the sum of two of them one
+/// more, and there is a sign.
+pub const PLACE_FRAC: u32 = 13;
 
 /// A sample: where the shaft was at a step of the grid.
 #[derive(Clone, Copy, Debug)]
@@ -23,20 +25,22 @@ pub struct Sample {
 /// of the count.
 ///
 /// Steps and places wrap; only differences from the origin are used.
+// The small fields first: the target reaches the first kilobyte by pairs.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Window {
+    /// Sums over a regular window; of no meaning else.
+    ages: AgeSums,
+    newest: usize,
+    count: usize,
+    edges: u32,
+    origin: i32,
+    base: i32,
+    regularity: Regularity,
     /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts.
     places: [i32; 2 * CAPACITY],
     steps: [i32; 2 * CAPACITY],
     edges_of: [u16; CAPACITY],
-    newest: usize,
-    count: usize,
-    edges: u32,
-    /// Places from the base, added up.
-    total: i64,
-    origin: i32,
-    base: i32,
-    regularity: Regularity,
 }
 
 /// How many of the newest samples came one a tick, at one and the same step from the origin.
@@ -55,7 +59,7 @@ impl Window {
             newest: 0,
             count: 0,
             edges: 0,
-            total: 0,
+            ages: AgeSums::NONE,
             origin: 0,
             base: 0,
             regularity: Regularity {
@@ -69,7 +73,6 @@ impl Window {
     pub const fn clear(&mut self) {
         self.count = 0;
         self.edges = 0;
-        self.total = 0;
         self.regularity.samples = 0;
     }
 
@@ -83,27 +86,68 @@ impl Window {
         self.edges
     }
 
-    /// Step from the origin of samples that stand one a tick, a full window of them.
+    /// True with a full window of samples that stand one a tick.
     #[inline]
-    pub const fn regular(&self, config: &Config) -> Option<i32> {
-        if self.count == config.window() as usize && self.regularity.samples >= self.count {
-            Some(self.regularity.step)
-        } else {
-            None
-        }
+    const fn is_regular(&self, config: &Config) -> bool {
+        self.count == config.window() as usize && self.regularity.samples >= self.count
     }
 
     /// Goes on by a tick: the origin moves by `steps` of the grid and to the place `base`, a sample comes and old ones go.
+    /// Gives the step of the newest sample if a full window of them stands one a tick.
     #[inline]
-    pub fn tick(&mut self, config: &Config, steps: i32, base: i32, sample: Option<Sample>) {
+    pub fn tick(
+        &mut self,
+        config: &Config,
+        steps: i32,
+        base: i32,
+        sample: Option<Sample>,
+    ) -> Option<i32> {
         self.origin = self.origin.wrapping_add(steps);
         let way = base.wrapping_sub(self.base);
         self.base = base;
-        self.total = self.total.wrapping_sub(wide(way, self.count as i32));
+        match sample {
+            Some(sample) if self.goes_on(steps, &sample) && self.is_regular(config) => {
+                config.regular.move_base(&mut self.ages, way);
+                self.exchange(config, sample);
+                Some(sample.step)
+            }
+            _ => {
+                self.change(config, steps, sample);
+                self.is_regular(config).then_some(self.regularity.step)
+            }
+        }
+    }
+
+    #[inline]
+    const fn goes_on(&self, steps: i32, sample: &Sample) -> bool {
+        steps == super::STEPS && sample.step == self.regularity.step
+    }
+
+    /// One for one: what a regular window does.
+    #[inline]
+    fn exchange(&mut self, config: &Config, sample: Sample) {
+        let slot = self.newest.wrapping_add(self.count).wrapping_sub(1) & (CAPACITY - 1);
+        if let (Some(edges), Some(oldest)) = (self.edges_of.get(slot), self.places.get(slot)) {
+            let newest = sample.place.wrapping_sub(self.base);
+            let oldest = oldest.wrapping_sub(self.base);
+            config.regular.exchange(&mut self.ages, newest, oldest);
+            self.edges = self
+                .edges
+                .wrapping_add(sample.edges)
+                .wrapping_sub(u32::from(*edges));
+        }
+        self.store(sample);
+    }
+
+    #[inline(never)]
+    fn change(&mut self, config: &Config, steps: i32, sample: Option<Sample>) {
         match sample {
             Some(sample) => {
-                let goes_on = steps == super::STEPS && sample.step == self.regularity.step;
-                let before = if goes_on { self.regularity.samples } else { 0 };
+                let before = if self.goes_on(steps, &sample) {
+                    self.regularity.samples
+                } else {
+                    0
+                };
                 self.regularity = Regularity {
                     step: sample.step,
                     samples: before.saturating_add(1),
@@ -113,13 +157,14 @@ impl Window {
             None => self.regularity.samples = 0,
         }
         self.drop_old(config);
+        if self.is_regular(config) {
+            self.ages = AgeSums::of(self.places());
+        }
     }
 
+    /// Puts a sample in front.
     #[inline]
-    fn push(&mut self, sample: Sample) {
-        if self.count >= CAPACITY {
-            self.drop_oldest();
-        }
+    fn store(&mut self, sample: Sample) {
         self.newest = self.newest.wrapping_sub(1) & (CAPACITY - 1);
         let (first, second) = (self.newest, self.newest.wrapping_add(CAPACITY));
         let step = self.origin.wrapping_add(sample.step);
@@ -132,15 +177,18 @@ impl Window {
         if let Some(edges) = self.edges_of.get_mut(first) {
             *edges = sample.edges as u16;
         }
+    }
+
+    fn push(&mut self, sample: Sample) {
+        if self.count >= CAPACITY {
+            self.drop_oldest();
+        }
+        self.store(sample);
         self.count = self.count.wrapping_add(1);
         self.edges = self.edges.wrapping_add(sample.edges);
-        self.total = self
-            .total
-            .wrapping_add(i64::from(sample.place.wrapping_sub(self.base)));
     }
 
     /// Lets go of what is too old; a few a tick, which is faster than they come.
-    #[inline]
     fn drop_old(&mut self, config: &Config) {
         let half_window = config.window_steps.wrapping_shr(1);
         for _ in 0..4 {
@@ -161,32 +209,24 @@ impl Window {
         }
     }
 
-    #[inline]
     fn drop_oldest(&mut self) {
         self.count = self.count.saturating_sub(1);
         let slot = self.newest.wrapping_add(self.count) & (CAPACITY - 1);
-        if let (Some(edges), Some(place)) = (self.edges_of.get(slot), self.places.get(slot)) {
+        if let Some(edges) = self.edges_of.get(slot) {
             self.edges = self.edges.wrapping_sub(u32::from(*edges));
-            self.total = self
-                .total
-                .wrapping_sub(i64::from(place.wrapping_sub(self.base)));
         }
     }
 
-    /// Places from the base, added up.
-    pub const fn total(&self) -> i64 {
-        self.total
+    /// Sums over a regular window.
+    pub const fn ages(&self) -> &AgeSums {
+        &self.ages
     }
 
     /// Places from the base, newest first.
-    #[inline]
-    pub fn places(&self) -> impl Iterator<Item = i32> {
-        let base = self.base;
-        self.places
-            .get(self.newest..)
-            .unwrap_or(&[])
-            .iter()
-            .map(move |place| place.wrapping_sub(base))
+    fn places(&self) -> impl Iterator<Item = i32> {
+        let end = self.newest.wrapping_add(self.count);
+        let places = self.places.get(self.newest..end).unwrap_or(&[]);
+        places.iter().map(|place| place.wrapping_sub(self.base))
     }
 
     /// Sums over all samples.
@@ -194,7 +234,7 @@ impl Window {
     pub fn sums(&self) -> Sums {
         let steps = self.steps.get(self.newest..).unwrap_or(&[]);
         let mut sums = Sums::default();
-        for (place, step) in self.places().zip(steps).take(self.count) {
+        for (place, step) in self.places().zip(steps) {
             sums.add(step.wrapping_sub(self.origin), place);
         }
         sums
