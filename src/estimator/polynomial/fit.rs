@@ -17,13 +17,16 @@ use super::window::PLACE_FRAC;
 use crate::estimator::saturate;
 use crate::units::Position;
 
-/// Σ tᵏ and Σ x·tᵏ, times in steps of the grid and places with [`PLACE_FRAC`] fractional bits.
+/// Σ w, Σ w·tᵏ and Σ w·x·tᵏ, times in steps of the grid and places with [`PLACE_FRAC`] fractional bits. The weight w of a
+/// sample is the number of its edges, up to [`MOST_WEIGHT`]: with more, they hardly differ.
 ///
 /// A window reaches from −2⁷ to 2⁶ steps, so that of 64 samples the sums of powers fit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {
     /// Samples.
-    pub count: i32,
+    pub samples: usize,
+    /// Σ w.
+    pub weight: i32,
     pub t1: i32,
     pub t2: i32,
     pub t3: i32,
@@ -33,17 +36,23 @@ pub struct Sums {
     pub xt2: i64,
 }
 
+/// Largest weight of a sample.
+const MOST_WEIGHT: u16 = 4;
+
 impl Sums {
     #[inline]
-    pub fn add(&mut self, time: i32, place: i32) {
-        let square = time.wrapping_mul(time);
-        self.count = self.count.wrapping_add(1);
-        self.t1 = self.t1.wrapping_add(time);
+    pub fn add(&mut self, time: i32, place: i32, edges: u16) {
+        let weight = i32::from(edges.min(MOST_WEIGHT));
+        let first = weight.wrapping_mul(time);
+        let square = first.wrapping_mul(time);
+        self.samples = self.samples.wrapping_add(1);
+        self.weight = self.weight.wrapping_add(weight);
+        self.t1 = self.t1.wrapping_add(first);
         self.t2 = self.t2.wrapping_add(square);
         self.t3 = self.t3.wrapping_add(square.wrapping_mul(time));
-        self.t4 = self.t4.wrapping_add(wide(square, square));
-        self.x = self.x.wrapping_add(i64::from(place));
-        self.xt = self.xt.wrapping_add(wide(place, time));
+        self.t4 = self.t4.wrapping_add(wide(square, time.wrapping_mul(time)));
+        self.x = self.x.wrapping_add(wide(place, weight));
+        self.xt = self.xt.wrapping_add(wide(place, first));
         self.xt2 = self.xt2.wrapping_add(wide(place, square));
     }
 }
@@ -83,7 +92,7 @@ impl Fit {
     pub fn new(of: &Sums, geometry: &Geometry, velocity: i32, acceleration: i32) -> Self {
         let slope = velocity.wrapping_shr(OF_VELOCITY);
         let Sums { x, xt, xt2, .. } = *of;
-        let xu = times(xt, of.count)
+        let xu = times(xt, of.weight)
             .wrapping_sub(times(x, of.t1))
             .wrapping_sub(times(geometry.uu, slope));
         let line = i64::from(slope)
@@ -93,7 +102,7 @@ impl Fit {
             None => (0, 0),
             Some(by_spread) => {
                 let curvature = acceleration.wrapping_shr(OF_ACCELERATION);
-                let bend = times(xt2, of.count)
+                let bend = times(xt2, of.weight)
                     .wrapping_sub(times(x, of.t2))
                     .wrapping_sub(times(geometry.u2u, slope))
                     .wrapping_sub(geometry.beta_times(xu))
@@ -110,14 +119,14 @@ impl Fit {
             .wrapping_sub(wide(velocity, of.t1).wrapping_shr(OF_VELOCITY))
             .wrapping_sub(wide(acceleration, of.t2).wrapping_shr(OF_ACCELERATION));
         Self {
-            place: mean(rest, of.count).wrapping_shl(Position::FRAC_NBITS - PLACE_FRAC),
+            place: mean(rest, of.weight).wrapping_shl(Position::FRAC_NBITS - PLACE_FRAC),
             velocity,
             acceleration,
         }
     }
 }
 
-/// `sum`/`count` rounded to within 1, |sum| < 2⁴⁶ and 0 < count ≤ 64, by two 32-bit divisions.
+/// `sum`/`count` rounded to within 1, |sum| < 2⁴⁶ and 0 < count ≤ 256, by two 32-bit divisions.
 #[inline]
 fn mean(sum: i64, count: i32) -> i64 {
     let high = sum.wrapping_shr(16) as i32;

@@ -34,9 +34,9 @@ pub struct Geometry {
     pub by_spread: Option<Reciprocal>,
     /// Mean time of the samples, steps in Q.8.
     pub middle: i32,
-    /// Variance of the velocity at the middle, (d/tick)² per d² of a sample, Q4.28.
+    /// Variance of the velocity at the middle, (d/tick)² per d² of an edge times the mean weight, Q4.28.
     pub velocity_gain: u32,
-    /// Variance of the acceleration, (d/tick²)² per d² of a sample, Q4.28.
+    /// Variance of the acceleration, (d/tick²)² per d² of an edge times the mean weight, Q4.28.
     pub acceleration_gain: u32,
 }
 
@@ -44,8 +44,8 @@ impl Geometry {
     #[inline(never)]
     /// Of samples at the times of `m`.
     pub fn of(m: &Sums) -> Self {
-        let uu = wide(m.count, m.t2).wrapping_sub(wide(m.t1, m.t1));
-        let u2u = wide(m.count, m.t3).wrapping_sub(wide(m.t1, m.t2));
+        let uu = wide(m.weight, m.t2).wrapping_sub(wide(m.t1, m.t1));
+        let u2u = wide(m.weight, m.t3).wrapping_sub(wide(m.t1, m.t2));
         let by_uu = Reciprocal::new(uu.cast_unsigned());
         let mut geometry = Self {
             uu,
@@ -55,20 +55,20 @@ impl Geometry {
             middle: m
                 .t1
                 .wrapping_shl(MIDDLE_FRAC)
-                .checked_div(m.count)
+                .checked_div(m.weight)
                 .unwrap_or(0),
             spread: 0,
             by_spread: None,
             velocity_gain: 0,
             acceleration_gain: 0,
         };
-        geometry.spread = times(m.t4, m.count)
+        geometry.spread = times(m.t4, m.weight)
             .wrapping_sub(wide(m.t2, m.t2))
             .wrapping_sub(geometry.beta_times(u2u));
-        if m.count >= MIN_SAMPLES as i32 && geometry.spread > 0 {
+        if m.samples >= MIN_SAMPLES && geometry.spread > 0 {
             geometry.by_spread = Some(Reciprocal::new(geometry.spread.cast_unsigned()));
         }
-        geometry.set_gains(m.count);
+        geometry.set_gains(m.weight);
         geometry
     }
 
@@ -81,9 +81,9 @@ impl Geometry {
             .wrapping_add(low.wrapping_shr(BETA_FRAC))
     }
 
-    fn set_gains(&mut self, count: i32) {
-        let count = u64::from(count.unsigned_abs());
-        self.velocity_gain = self.by_uu.size(count, 2 * GRID_BITS + GAIN_FRAC);
+    fn set_gains(&mut self, weight: i32) {
+        let weight = u64::from(weight.unsigned_abs());
+        self.velocity_gain = self.by_uu.size(weight, 2 * GRID_BITS + GAIN_FRAC);
         let Some(by_spread) = self.by_spread else {
             return;
         };
@@ -91,9 +91,9 @@ impl Geometry {
             .middle
             .wrapping_shr(MIDDLE_FRAC - ARM_FRAC - 1)
             .wrapping_sub(self.beta.wrapping_shr(BETA_FRAC - ARM_FRAC));
-        let turned = count.saturating_mul(u64::from(arm.unsigned_abs().saturating_pow(2)));
+        let turned = weight.saturating_mul(u64::from(arm.unsigned_abs().saturating_pow(2)));
         let of_bend = by_spread.size(turned, 2 * GRID_BITS + GAIN_FRAC - 2 * ARM_FRAC);
         self.velocity_gain = self.velocity_gain.saturating_add(of_bend);
-        self.acceleration_gain = by_spread.size(count, 4 * GRID_BITS + 2 + GAIN_FRAC);
+        self.acceleration_gain = by_spread.size(weight, 4 * GRID_BITS + 2 + GAIN_FRAC);
     }
 }

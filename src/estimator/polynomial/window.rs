@@ -234,8 +234,10 @@ impl Window {
     pub fn sums(&self) -> Sums {
         let steps = self.steps.get(self.newest..).unwrap_or(&[]);
         let mut sums = Sums::default();
-        for (place, step) in self.places().zip(steps) {
-            sums.add(step.wrapping_sub(self.origin), place);
+        for ((place, step), age) in self.places().zip(steps).zip(0..) {
+            let slot = self.newest.wrapping_add(age) & (CAPACITY - 1);
+            let edges = self.edges_of.get(slot).copied().unwrap_or(0);
+            sums.add(step.wrapping_sub(self.origin), place, edges);
         }
         sums
     }
