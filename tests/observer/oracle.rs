@@ -8,6 +8,9 @@ use crate::evidence::{Hand, Heard};
 use crate::seeded::seeded;
 
 const DELAY: usize = 2;
+/// Largest errors of position, velocity and acceleration: half an LSB of the output, 7.6e-6, 4.8e-7 and 3e-8, and what
+/// the innovation's and the jerk's rounding adds.
+const BOUNDS: [f64; 3] = [1e-5, 4e-6, 3e-6];
 
 /// The observer with the drive's model, from its description.
 struct Oracle {
@@ -46,6 +49,7 @@ impl Oracle {
         match &heard.sample {
             Some(sample) => {
                 let octave = sample.edges.ilog2() as i32 - bits(self.unseen);
+                self.anchored &= self.unseen < 128;
                 (self.silence, self.unseen) = (0, 0);
                 let age = sample.age.to_num::<f64>();
                 let edges = f64::from(1_u32 << octave.max(0)) * 2.0_f64.sqrt();
@@ -66,14 +70,14 @@ impl Oracle {
             }
             None => {
                 self.silence = if heard.delta == 0 {
-                    self.silence + 1
+                    self.silence.saturating_add(1)
                 } else {
                     0
                 };
                 let x = self.state[0];
                 let outside = (-0.25 - x).max(0.0) + (1.25 - x).min(0.0);
                 self.unseen += 1;
-                self.correct(outside, -3);
+                self.correct(outside, -2);
             }
         }
     }
@@ -113,6 +117,12 @@ fn worst_error(steps: &[(f64, u32)], disturbance: f64) -> [f64; 3] {
     let omega = core::f64::consts::TAU / 90.0;
     let (mut position, mut velocity, mut acceleration) = (0.5, 0.0, 0.0);
     let mut worst = [0.0_f64; 3];
+    // At rest until the line is full.
+    for _ in 0..DELAY {
+        hand.move_to(0.5, Some(Command::from_num(0.005)));
+        oracle.commands.push(Command::from_num(0.005).to_num());
+        oracle.unseen += 1;
+    }
     let mut begun = false;
     let mut run = |command: f64, worst: &mut [f64; 3]| {
         let command = Command::from_num(command);
@@ -123,19 +133,10 @@ fn worst_error(steps: &[(f64, u32)], disturbance: f64) -> [f64; 3] {
         acceleration += jerk;
         let heard = hand.move_to(position, Some(command));
         if !begun {
-            // The first ticks fill the line; then rest is what the disturbance makes of the command.
-            begun = hand.listener.observer.model() == Model::Drive;
-            if !begun {
-                oracle.commands.push(told);
-                oracle.unseen += 1;
-                return;
-            }
+            // Rest is what the disturbance makes of the command.
+            begun = true;
             let [stiffness, _] = config.jerk_coefficients();
-            let at_first = if DELAY == 0 {
-                told
-            } else {
-                oracle.commands[oracle.commands.len() - DELAY]
-            };
+            let at_first = oracle.commands[oracle.commands.len() - DELAY];
             oracle.state[3] = -stiffness * 160.0 * (at_first - 0.005);
         }
         oracle.update(&heard, told);
@@ -169,9 +170,8 @@ proptest! {
         disturbance in -3.0..3.0_f64,
     ) {
         let worst = worst_error(&steps, disturbance);
-        println!("{worst:?}");
-        for (worst, bound) in worst.iter().zip([3e-5, 1e-5, 1e-5]) {
-            prop_assert!(worst <= &bound, "{worst:?}");
+        for (worst, bound) in worst.iter().zip(BOUNDS) {
+            prop_assert!(*worst <= bound, "{worst:?}");
         }
     }
 }

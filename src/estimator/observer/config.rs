@@ -2,15 +2,12 @@
 
 use super::Model;
 use super::design::{Dynamics, Matrix, Steady};
+use super::motion::{COARSE_FRAC, FINE_FRAC, INNOVATION_FRAC};
 use super::params::ObserverParams;
 use crate::estimator::{Delay, Lags, Variances};
 use crate::parameter_table::ParameterTable;
 use crate::units::{AxisScale, Lag, RangeError, Variance, checked};
 
-/// Fractional bits of the state.
-pub const STATE_FRAC: u32 = 44;
-/// Fractional bits of an innovation.
-pub const INNOVATION_FRAC: u32 = 24;
 /// Fractional bits of [`Config::wave_slope`].
 pub const WAVE_FRAC: u32 = 24;
 /// Fractional bits of a normalised innovation.
@@ -32,6 +29,12 @@ pub const ONE_A_TICK: i32 = SPARSE as i32;
 /// rare edges come near to dead beat (found by closed loops on the 16K20F3 at 1 to 1.5).
 const CALM: f64 = 1.5;
 
+/// Gain of the acceleration from which on edges are taken for noisier than they are: near 3.5 a filter is dead beat, and
+/// an edge that is older than the mean upsets it.
+const HIGHEST_GAIN: f64 = 1.9;
+/// Doublings of an edge's variance to that end.
+const MOST_DOUBLINGS: u32 = 32;
+
 /// What holds at a density of edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Class {
@@ -47,9 +50,10 @@ pub struct Class {
     pub variances: Variances,
 }
 
-/// How far products of gain and innovation are shifted to become state.
+/// Powers of two, up to 2³⁰, by which the high words of products of gain and innovation become state. A product costs
+/// less than a shift of 64 bits by a number that is not known beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GainScale(pub [u32; 4]);
+pub struct GainScale(pub [i32; 4]);
 
 /// The drive's velocity response over a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +66,8 @@ pub struct Response {
     pub stiffness: i32,
     /// k₂: jerk for an acceleration, with 4 fractional bits less.
     pub damping: i32,
-    /// Shift of k₁·gap in Q11.20 to a state.
-    pub shift: u32,
+    /// Power of two by which k₁·gap in Q11.20 becomes a jerk in Q.56.
+    pub multiplier: u32,
     /// Transport delay, ticks.
     pub delay: usize,
 }
@@ -96,7 +100,7 @@ pub struct Config {
     /// Variances at rest.
     pub(super) rest_variances: Variances,
     /// Velocity error a velocity that the long wave makes, Q.24.
-    pub(super) wave_slope: i32,
+    pub(super) wave_slope: u32,
     /// The long wave's wave number, 1/d, Q.32.
     pub(super) wave_number: u32,
     warm_up_ticks: u32,
@@ -122,7 +126,7 @@ impl PerTick {
             "natural_period_ticks",
             params.natural_period_s * rate,
             8.0,
-            4e5,
+            2e4,
         )?;
         let omega = core::f64::consts::TAU / period_ticks;
         let [stiffness, damping] = response(omega, params.damping);
@@ -201,7 +205,8 @@ impl Config {
     /// Solves 36 Riccati equations by iteration, each from the solution of its neighbour.
     ///
     /// # Errors
-    /// [`RangeError`] for a parameter out of range, a natural period below 8 ticks, or a delay beyond 63.
+    /// [`RangeError`] for a parameter out of range, a natural period outside 8 to 20 000 ticks, or a
+    /// delay beyond 63.
     #[inline(never)]
     pub fn new(params: &ObserverParams, scale: AxisScale) -> Result<Self, RangeError> {
         params.check()?;
@@ -223,7 +228,7 @@ impl Config {
                 velocity: variance(1.0 / (3.0 * rest_ticks * rest_ticks)),
                 acceleration: variance(1.0 / libm::pow(rest_ticks, 4.0)),
             },
-            wave_slope: quantised(slope, WAVE_FRAC),
+            wave_slope: quantised(slope, WAVE_FRAC).unsigned_abs(),
             wave_number: libm::ldexp(wave_number.min(0.999), 32) as u32,
             warm_up_ticks: warm_up(&per_tick, &kinematic),
         })
@@ -260,8 +265,12 @@ impl Config {
     pub fn gains(&self, model: Model, octave: i32) -> [f64; 4] {
         let class = self.class(model == Model::Drive, octave.saturating_add(ONE_A_TICK));
         let mut gains = [0.0; 4];
-        for ((gain, bits), shift) in gains.iter_mut().zip(class.gains).zip(self.gain_scale.0) {
-            *gain = libm::ldexp(f64::from(bits), (-20_i32).wrapping_sub_unsigned(shift));
+        for ((gain, bits), frac) in gains
+            .iter_mut()
+            .zip(class.gains)
+            .zip(self.gain_scale.fracs())
+        {
+            *gain = libm::ldexp(f64::from(bits), frac.cast_signed().wrapping_neg());
         }
         gains
     }
@@ -272,10 +281,12 @@ impl Config {
         let Response {
             stiffness,
             damping,
-            shift,
+            multiplier,
             ..
         } = self.response;
-        let frac = shift.wrapping_add(STATE_FRAC - 20).cast_signed();
+        let frac = JERK_FRAC
+            .wrapping_sub(multiplier.trailing_zeros())
+            .cast_signed();
         [
             libm::ldexp(f64::from(stiffness), frac.wrapping_neg()),
             libm::ldexp(f64::from(damping), 4_i32.wrapping_sub(frac)),
@@ -313,7 +324,15 @@ fn design(per_tick: &PerTick, dynamics: &Dynamics) -> [Steady; CLASSES] {
     for (index, steady) in steady.iter_mut().enumerate().rev() {
         let gap = 1_u32.wrapping_shl(SPARSE.saturating_sub(index) as u32);
         let dynamics = dynamics.calmed(libm::pow(density(index).min(1.0), CALM));
-        *steady = dynamics.steady(gap, per_tick.measurement(density(index)), &mut guess);
+        let mut variance = per_tick.measurement(density(index));
+        for _ in 0..MOST_DOUBLINGS {
+            *steady = dynamics.steady(gap, variance, &mut guess);
+            let [.., acceleration, _] = steady.gains;
+            if acceleration < HIGHEST_GAIN {
+                break;
+            }
+            variance *= 2.0;
+        }
     }
     steady
 }
@@ -348,9 +367,12 @@ fn lag(steady: &Steady) -> Lag {
     Lag::saturating_from_num(velocity / acceleration - 0.5)
 }
 
+/// Largest variance of a class: with that of the long wave it stays in its format.
+const MOST_VARIANCE: f64 = 16_384.0;
+
 #[inline(never)]
 fn variance(value: f64) -> Variance {
-    Variance::saturating_from_num(value)
+    Variance::saturating_from_num(value.min(MOST_VARIANCE))
 }
 
 /// `value` with `frac` fractional bits; saturates.
@@ -364,6 +386,9 @@ fn filling(value: f64) -> i32 {
     29_i32.wrapping_sub(libm::ilogb(value))
 }
 
+/// The high word of gain · innovation has so many fractional bits less than the gain.
+const STATE_OF_GAIN: u32 = 32 - INNOVATION_FRAC;
+
 impl GainScale {
     /// Shifts at which the largest gain of each kind fills a mantissa.
     fn holding(one: &[Steady; CLASSES], other: &[Steady; CLASSES]) -> Self {
@@ -373,21 +398,44 @@ impl GainScale {
                 *largest = largest.max(gain.abs());
             }
         }
-        // 2^frac·gain ≤ 2³⁰, and products come with 24 + frac bits for 44.
-        Self(largest.map(|gain| {
-            let frac = filling(gain);
-            frac.clamp(21, 60).wrapping_sub(20).cast_unsigned()
-        }))
+        let [x, v, a, d] = largest.map(filling);
+        let multiplier = |frac: i32, state: u32| {
+            let highest = STATE_OF_GAIN.wrapping_add(state).cast_signed();
+            let shift = highest.wrapping_sub(frac).clamp(0, 30);
+            1_i32.wrapping_shl(shift.cast_unsigned())
+        };
+        Self([
+            multiplier(x, COARSE_FRAC),
+            multiplier(v, COARSE_FRAC),
+            multiplier(a, FINE_FRAC),
+            multiplier(d, FINE_FRAC),
+        ])
+    }
+
+    /// Fractional bits of the gains.
+    fn fracs(&self) -> [u32; 4] {
+        let [x, v, a, d] = self
+            .0
+            .map(|multiplier| STATE_OF_GAIN.wrapping_sub(multiplier.trailing_zeros()));
+        [
+            x.wrapping_add(COARSE_FRAC),
+            v.wrapping_add(COARSE_FRAC),
+            a.wrapping_add(FINE_FRAC),
+            d.wrapping_add(FINE_FRAC),
+        ]
     }
 
     fn quantise(&self, gains: &[f64; 4]) -> [i32; 4] {
         let mut quantised = [0; 4];
-        for ((gain, shift), place) in gains.iter().zip(self.0).zip(&mut quantised) {
-            *place = self::quantised(*gain, shift.wrapping_add(20));
+        for ((gain, frac), place) in gains.iter().zip(self.fracs()).zip(&mut quantised) {
+            *place = self::quantised(*gain, frac);
         }
         quantised
     }
 }
+
+/// Fractional bits of k₁ for which a velocity in Q11.20 would give a jerk without a shift.
+const JERK_FRAC: u32 = FINE_FRAC - 20;
 
 impl Response {
     fn new(params: &ObserverParams, per_tick: &PerTick, rate: f64) -> Result<Self, RangeError> {
@@ -398,13 +446,13 @@ impl Response {
             MAX_DELAY as f64 + 0.49,
         )?;
         let largest = per_tick.stiffness.max(per_tick.damping.abs() / 16.0);
-        let frac = filling(largest).clamp(25, 54).cast_unsigned();
+        let frac = filling(largest).clamp(25, 35).cast_unsigned();
         Ok(Self {
             full_velocity: quantised(per_tick.full_velocity, 20),
             offset: quantised(per_tick.full_velocity * params.offset, 20),
             stiffness: quantised(per_tick.stiffness, frac),
             damping: quantised(per_tick.damping, frac.wrapping_sub(4)),
-            shift: frac.wrapping_sub(STATE_FRAC - 20),
+            multiplier: 1_u32.wrapping_shl(JERK_FRAC.wrapping_sub(frac)),
             delay: libm::round(delay_ticks) as usize,
         })
     }
@@ -414,7 +462,7 @@ impl Supervision {
     fn new(params: &ObserverParams, per_tick: &PerTick, scale: AxisScale) -> Self {
         let rate = scale.tick_hz();
         let release = params.release_mm_per_min * scale.counts_per_mm() / (rate * 60.0);
-        let state = |value: f64| libm::ldexp(value.min(100.0), STATE_FRAC as i32) as i64;
+        let state = |value: f64| libm::ldexp(value.min(100.0), FINE_FRAC as i32) as i64;
         let level = params.fallback_sigmas * params.fallback_sigmas;
         Self {
             rest_ticks: (params.rest_s * rate).max(2.0) as u32,

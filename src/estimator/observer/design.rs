@@ -31,9 +31,9 @@ pub struct Dynamics {
 pub struct Steady {
     /// Correction of x, v, a, δ for an innovation of 1 d.
     pub gains: Vector,
-    /// Variance of v and a from measurement noise alone, between two corrections.
+    /// Variance of v and a on a drive that has its figures, between two corrections.
     pub variances: [f64; 2],
-    /// Variance of the innovation from measurement noise alone.
+    /// Variance of the innovation on a drive that has its figures.
     pub innovation: f64,
 }
 
@@ -94,7 +94,7 @@ impl Dynamics {
                 break;
             }
         }
-        self.with_noise_alone(gap, variance, gains)
+        self.stated(gap, variance, gains)
     }
 
     /// Ticks after which the filter of one edge a tick has forgotten an error to 1e-6.
@@ -113,14 +113,14 @@ impl Dynamics {
         MAX_SETTLING
     }
 
-    /// What measurement noise does to the filter of those gains, if the model is right.
+    /// What measurement noise, and a small share of the model's, does to the filter of those gains.
     #[inline(never)]
-    fn with_noise_alone(&self, gap: u32, variance: f64, gains: Vector) -> Steady {
-        let transition = self.transition();
+    fn stated(&self, gap: u32, variance: f64, gains: Vector) -> Steady {
+        let (transition, noise) = (self.transition(), self.calmed(STATED_SHARE).noise());
         let mut covariance = [[0.0; 4]; 4];
         let mut innovation = variance;
         for _ in 0..MAX_ROUNDS {
-            let before = propagated(&covariance, &transition, &NOTHING, gap);
+            let before = propagated(&covariance, &transition, &noise, gap);
             innovation = dot(&MEASURED, &before.map(|row| dot(&row, &MEASURED))) + variance;
             let after = corrected(&before, &gains, variance);
             let settled = has_settled(&covariance, &after);
@@ -130,7 +130,7 @@ impl Dynamics {
             }
         }
         let [_, [_, v, ..], [_, _, a, _], _] =
-            propagated(&covariance, &transition, &NOTHING, gap.wrapping_shr(1));
+            propagated(&covariance, &transition, &noise, gap.wrapping_shr(1));
         Steady {
             gains,
             variances: [v, a],
@@ -141,7 +141,9 @@ impl Dynamics {
 
 /// Longest stated settling, ticks.
 const MAX_SETTLING: u32 = 10_000;
-const NOTHING: Matrix = [[0.0; 4]; 4];
+/// Share of the model's noise that the stated variances count on. The gains are for a drive that is off its figures;
+/// on a drive that has them the errors are those of the edges and of about this.
+const STATED_SHARE: f64 = 0.1;
 /// H: what a measurement sees of x, v, a, δ.
 const MEASURED: Vector = [1.0, -MEAN_AGE, MEAN_AGE * MEAN_AGE / 2.0, 0.0];
 

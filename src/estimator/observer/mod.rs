@@ -27,8 +27,9 @@
 //! the map's residual of long wave on top: v·slope and v²·curvature. A wrong drive model is not in it: off its
 //! nominal figures the error is several times the stated 1σ while the axis accelerates.
 //!
-//! State is Q19.44 relative to the newest count; gains are 30-bit mantissas. Against an `f64` oracle of the same
-//! recursion (test) the outputs are right to BOUND.
+//! State is Q11.52 and Q7.56, relative to the newest count; gains are 30-bit mantissas. Against an `f64` oracle of the same
+//! recursion (test) the outputs are right to 1e-5 d (half an LSB is 7.6e-6), 4e-6 d/tick and
+//! 3e-6 d/tick².
 mod config;
 mod design;
 mod motion;
@@ -38,8 +39,8 @@ mod supervisor;
 pub use config::Config;
 pub use params::ObserverParams;
 
-use self::config::{Class, INNOVATION_FRAC, MAX_UNSEEN, ONE_A_TICK, STATE_FRAC};
-use self::motion::Motion;
+use self::config::{Class, MAX_UNSEEN, ONE_A_TICK};
+use self::motion::{COARSE_FRAC, INNOVATION_FRAC, Motion, high};
 use self::supervisor::{Line, Supervisor};
 use super::{Estimate, Evidence, Lags, Variances};
 use crate::capture::Observation;
@@ -58,14 +59,16 @@ pub enum Model {
 
 /// How far beyond its discrete a position may lie unpunished, d: what the places of the edges differ by.
 const TOLERANCE: i64 = ONE / 4;
-/// Octave of the gains at the end of a discrete: those of an edge in eight ticks end a motion within some ten
+/// Octave of the gains at the end of a discrete: those of an edge in four ticks end a motion within some ten
 /// ticks, and do not take a place that is a little off for a motion.
-const HOLD_OCTAVE: i32 = ONE_A_TICK - 3;
+const HOLD_OCTAVE: i32 = ONE_A_TICK - 2;
 /// One d as an innovation.
 const ONE: i64 = 1 << INNOVATION_FRAC;
 /// A tick in a span of time.
 const TICK: i32 = 1 << 28;
 
+/// Counts by which the motion of a tick may differ from the last velocity; the position's format has some more.
+const MOST_SLIP: u32 = 1000;
 /// A tick that is late or early by no more, 6e-8 of itself, is on time.
 const PUNCTUAL: u32 = 16;
 
@@ -113,8 +116,7 @@ impl Estimator {
     pub fn prime(&mut self, velocity: Velocity) {
         *self = Self::new(self.config);
         if velocity != Velocity::ZERO {
-            let bits = i64::from(velocity.to_bits());
-            self.motion = Motion::steady(bits.wrapping_shl(STATE_FRAC - Velocity::FRAC_NBITS));
+            self.motion = Motion::steady(velocity.to_bits());
             self.silence = 0;
         }
     }
@@ -156,6 +158,12 @@ impl Estimator {
             self.motion.velocity = 0;
             self.motion.acceleration = 0;
         } else {
+            let slip = high(self.motion.velocity)
+                .wrapping_shr(Velocity::FRAC_NBITS)
+                .wrapping_sub(observation.delta);
+            if slip.unsigned_abs() > MOST_SLIP {
+                self.restart(observation);
+            }
             self.motion.advance(jerk, observation.delta);
             let elapsed = evidence.edges.elapsed(observation).to_bits().cast_signed();
             let late = elapsed.wrapping_sub(TICK);
@@ -191,7 +199,7 @@ impl Estimator {
         let motion = &self.motion;
         self.config
             .response
-            .jerk(wanted, motion.velocity_q20(), motion.acceleration_q24())
+            .jerk(wanted, motion.velocity, motion.acceleration)
             .wrapping_add(motion.disturbance)
     }
 
@@ -241,7 +249,7 @@ impl Estimator {
         self.placed = place.wrapping_sub(nominal(observation, sample));
         if !self.anchored {
             self.anchored = true;
-            let correction = innovation.wrapping_shl(STATE_FRAC - INNOVATION_FRAC);
+            let correction = innovation.wrapping_shl(COARSE_FRAC - INNOVATION_FRAC);
             self.motion.position = self.motion.position.wrapping_add(correction);
             return;
         }
@@ -270,7 +278,7 @@ impl Estimator {
         let position = self
             .motion
             .position
-            .wrapping_shr(STATE_FRAC - INNOVATION_FRAC)
+            .wrapping_shr(COARSE_FRAC - INNOVATION_FRAC)
             .wrapping_sub(self.placed);
         let outside = if position < TOLERANCE.wrapping_neg() {
             TOLERANCE.wrapping_neg().wrapping_sub(position)
@@ -292,8 +300,8 @@ impl Estimator {
     #[cold]
     fn restart(&mut self, observation: &Observation<'_>) {
         self.restarts = self.restarts.saturating_add(1);
-        self.motion = Motion::steady(i64::from(observation.delta).wrapping_shl(STATE_FRAC));
-        self.supervisor.restart();
+        self.motion = Motion::steady(observation.delta.wrapping_shl(Velocity::FRAC_NBITS));
+        self.supervisor.doubt();
         self.placed = 0;
         self.silence = 0;
         self.unseen = 0;
@@ -330,7 +338,7 @@ impl Estimator {
     #[inline]
     fn with_long_wave(&self, class: &Class, velocity: i32) -> Variances {
         let speed = velocity.unsigned_abs();
-        let slope = i64::from(self.config.wave_slope).unsigned_abs();
+        let slope = u64::from(self.config.wave_slope);
         // Q20 · Q24 for 24, and times Q32 once more.
         let of_velocity = u64::from(speed).wrapping_mul(slope).wrapping_shr(20) as u32;
         let wave = u64::from(speed).wrapping_mul(u64::from(self.config.wave_number));
@@ -348,11 +356,19 @@ impl Estimator {
 /// While at rest the disturbance takes up 2⁻ⁿ of the jerk in a tick.
 const REST_SHIFT: u32 = 5;
 
+/// Largest deviation by the long wave, 128 in Q8.24: its square and the variance of a class fit their format.
+const MOST_DEVIATION: u32 = 1 << 31;
+
 /// `variance` and the square of a deviation in Q8.24.
 #[inline]
 fn added(variance: Variance, deviation: u32) -> Variance {
+    let deviation = if deviation > MOST_DEVIATION {
+        MOST_DEVIATION
+    } else {
+        deviation
+    };
     let square = u64::from(deviation).wrapping_mul(u64::from(deviation));
-    Variance::from_bits(variance.to_bits().saturating_add(square))
+    Variance::from_bits(variance.to_bits().wrapping_add(square))
 }
 
 /// Octave of the density of edges: of `edges` now, after `unseen` ticks without. Where it lies between two it is the
@@ -367,11 +383,10 @@ const fn density(edges: u32, unseen: u32) -> i32 {
 /// Place of a sample relative to the count, d with [`INNOVATION_FRAC`] bits.
 #[inline]
 const fn relative(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
-    sample
-        .position
-        .to_bits()
-        .wrapping_sub(observation.count.wrapping_shl(Position::FRAC_NBITS))
-        .wrapping_shl(INNOVATION_FRAC - Position::FRAC_NBITS)
+    // No further than the motion of a tick and the map's correction: the low words suffice.
+    let count = (observation.count as i32).wrapping_shl(Position::FRAC_NBITS);
+    let place = sample.position.to_bits() as i32;
+    (place.wrapping_sub(count) as i64).wrapping_shl(INNOVATION_FRAC - Position::FRAC_NBITS)
 }
 
 /// Where the sample would lie if every edge lay at its whole number.
@@ -386,7 +401,7 @@ const fn nominal(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
     }
 }
 
-/// An innovation within ±128 d, which is that of a motion and not of a jump of the count.
+/// An innovation within ±8 d, which is that of a motion and not of a jump of the count.
 #[inline]
 const fn credible(innovation: i64) -> Option<i32> {
     let low = innovation as i32;

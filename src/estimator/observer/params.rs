@@ -35,9 +35,9 @@ parameter_table! {
         /// Change of the demanded feed that ends an assumed rest before the first edge
         release_mm_per_min: 15.0, "mm/min", 1e-3..=1e5;
         /// Root mean square of the innovations, over that from the edges' noise alone, that ends the drive's model
-        fallback_sigmas: 80.0, "1", 1.0..=100.0;
+        fallback_sigmas: 100.0, "1", 1.0..=100.0;
         /// Time for which it is to be exceeded
-        fallback_s: 0.02, "s", 0.0..=1.0;
+        fallback_s: 0.05, "s", 0.0..=1.0;
         /// Error of the predicted acceleration that the model is taken back at
         return_m_s2: 0.1, "m/s²", 1e-4..=1e4;
         /// Time for which the prediction is to be that good; doubled by each fallback, up to 64 times

@@ -1,8 +1,8 @@
 //! Which model runs, and the line on which a command travels to the drive.
 
 use super::Model;
-use super::config::{INNOVATION_FRAC, MAX_DELAY, Response, SIGMA_FRAC, Supervision};
-use super::motion::Motion;
+use super::config::{MAX_DELAY, Response, SIGMA_FRAC, Supervision};
+use super::motion::{INNOVATION_FRAC, Motion};
 use crate::units::Command;
 
 /// Innovations beyond so many σ count as so many.
@@ -89,8 +89,17 @@ impl Supervisor {
         self.fallbacks
     }
 
+    /// The state was lost: if it was by the drive's model, that may be why.
+    pub const fn doubt(&mut self) {
+        if matches!(self.model, Model::Drive) {
+            self.fall_back();
+        } else {
+            self.restart();
+        }
+    }
+
     /// Begins anew with the kinematic model.
-    pub const fn restart(&mut self) {
+    const fn restart(&mut self) {
         let fallbacks = self.fallbacks;
         *self = Self::new();
         self.fallbacks = fallbacks;
@@ -105,7 +114,7 @@ impl Supervisor {
     /// Takes an innovation of the drive's model.
     #[inline]
     pub const fn weigh(&mut self, innovation: i32, per_sigma: i32, supervision: &Supervision) {
-        // Q24 · Q16 for 8.
+        // Q28 · Q16 for 8.
         let sigmas = (innovation as i64)
             .wrapping_mul(per_sigma as i64)
             .wrapping_shr(INNOVATION_FRAC + 16 - SIGMA_FRAC);
@@ -157,12 +166,8 @@ impl Supervisor {
             self.prove(supervision, self.fallbacks == 0);
             return;
         }
-        let shadow = Motion {
-            acceleration: self.acceleration,
-            ..*motion
-        };
         let jerk = response
-            .jerk(wanted, motion.velocity_q20(), shadow.acceleration_q24())
+            .jerk(wanted, motion.velocity, self.acceleration)
             .wrapping_add(motion.disturbance);
         let predicted = self.acceleration.wrapping_add(jerk);
         let error = motion.acceleration.wrapping_sub(predicted);
