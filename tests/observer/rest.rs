@@ -27,7 +27,7 @@ fn silence_is_rest_after_the_set_time() {
     );
     // It stopped within a tick; what the silence allows falls with the time that it lasts.
     for (ticks, speed) in speeds.iter().enumerate().skip(20) {
-        assert!(*speed <= 8.0 / ticks as f64, "{speed} after {ticks} ticks");
+        assert!(*speed <= 2.0 / ticks as f64, "{speed} after {ticks} ticks");
     }
     assert!((estimate.position.to_num::<f64>() - 660.5).abs() <= 1.5);
 }

@@ -30,22 +30,24 @@
 //! State is Q11.52 and Q7.56, relative to the newest count; gains are 30-bit mantissas. Against an `f64` oracle of the same
 //! recursion (test) the outputs are right to 1e-5 d (half an LSB is 7.6e-6), 4e-6 d/tick and
 //! 3e-6 d/tick².
+mod classes;
 mod config;
 mod design;
 mod motion;
 mod params;
+mod per_tick;
+mod report;
+mod sight;
 mod supervisor;
 
 pub use config::Config;
 pub use params::ObserverParams;
 
-use self::config::{Class, MAX_UNSEEN, ONE_A_TICK};
-use self::motion::{COARSE_FRAC, INNOVATION_FRAC, Motion, high};
+use self::motion::{Motion, high};
 use self::supervisor::{Line, Supervisor};
-use super::{Estimate, Evidence, Lags, Variances};
+use super::{Estimate, Evidence};
 use crate::capture::Observation;
-use crate::edges::EdgeSample;
-use crate::units::{Acceleration, Lag, Position, Variance, Velocity};
+use crate::units::Velocity;
 
 /// What the observer takes the motion to follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,13 +59,6 @@ pub enum Model {
     Kinematic,
 }
 
-/// How far beyond its discrete a position may lie unpunished, d: what the places of the edges differ by.
-const TOLERANCE: i64 = ONE / 4;
-/// Octave of the gains at the end of a discrete: those of an edge in four ticks end a motion within some ten
-/// ticks, and do not take a place that is a little off for a motion.
-const HOLD_OCTAVE: i32 = ONE_A_TICK - 2;
-/// One d as an innovation.
-const ONE: i64 = 1 << INNOVATION_FRAC;
 /// A tick in a span of time.
 const TICK: i32 = 1 << 28;
 
@@ -230,72 +225,6 @@ impl Estimator {
             .shadow(response, supervision, &mut self.motion, wanted, resting);
     }
 
-    /// Corrects by a sample of the edges.
-    #[inline]
-    fn see(&mut self, observation: &Observation<'_>, sample: &EdgeSample) {
-        let octave = density(sample.edges, self.unseen);
-        // Beyond the last class velocity is not followed, only bounded by silence.
-        self.anchored &= self.unseen < MAX_UNSEEN;
-        self.octave = octave;
-        self.silence = 0;
-        self.unseen = 0;
-        let drive = self.supervisor.model() == Model::Drive;
-        let class = self.config.class(drive, octave);
-        let place = relative(observation, sample);
-        let predicted = self
-            .motion
-            .position_ago(sample.age.to_bits(), class.age_spread);
-        let innovation = place.wrapping_sub(predicted);
-        self.placed = place.wrapping_sub(nominal(observation, sample));
-        if !self.anchored {
-            self.anchored = true;
-            let correction = innovation.wrapping_shl(COARSE_FRAC - INNOVATION_FRAC);
-            self.motion.position = self.motion.position.wrapping_add(correction);
-            return;
-        }
-        let Some(innovation) = credible(innovation) else {
-            self.restart(observation);
-            return;
-        };
-        self.motion
-            .correct(innovation, &class.gains, &self.config.gain_scale);
-        if drive {
-            self.supervisor
-                .weigh(innovation, class.per_sigma, &self.config.supervision);
-        }
-    }
-
-    /// Without a sample the shaft is within the discrete all the same; a position that left it is brought
-    /// back to its nearer end.
-    #[inline]
-    fn hold(&mut self, observation: &Observation<'_>) {
-        self.silence = if observation.delta == 0 {
-            self.silence.saturating_add(1)
-        } else {
-            0
-        };
-        self.unseen = self.unseen.saturating_add(1);
-        let position = self
-            .motion
-            .position
-            .wrapping_shr(COARSE_FRAC - INNOVATION_FRAC)
-            .wrapping_sub(self.placed);
-        let outside = if position < TOLERANCE.wrapping_neg() {
-            TOLERANCE.wrapping_neg().wrapping_sub(position)
-        } else if position > ONE + TOLERANCE {
-            (ONE + TOLERANCE).wrapping_sub(position)
-        } else {
-            return;
-        };
-        let Some(outside) = credible(outside) else {
-            self.restart(observation);
-            return;
-        };
-        let drive = self.supervisor.model() == Model::Drive;
-        let gains = &self.config.class(drive, HOLD_OCTAVE).gains;
-        self.motion.correct(outside, gains, &self.config.gain_scale);
-    }
-
     /// From the count's middle, at the speed at which it moves.
     #[cold]
     fn restart(&mut self, observation: &Observation<'_>) {
@@ -307,107 +236,7 @@ impl Estimator {
         self.unseen = 0;
         self.anchored = false;
     }
-
-    #[inline]
-    fn estimate(&self, observation: &Observation<'_>) -> Estimate {
-        let base = observation.count.wrapping_shl(Position::FRAC_NBITS);
-        let drive = self.supervisor.model() == Model::Drive;
-        let velocity = self.motion.velocity_q20();
-        let class = self.config.class(drive, self.octave);
-        let resting = self.silence >= self.config.supervision.rest_ticks;
-        let variances = if resting {
-            self.config.rest_variances
-        } else {
-            self.with_long_wave(class, velocity)
-        };
-        let at_rest = resting && self.motion.velocity == 0;
-        Estimate {
-            position: Position::from_bits(base.wrapping_add(self.motion.position_q16())),
-            velocity: Velocity::from_bits(velocity),
-            acceleration: Acceleration::from_bits(self.motion.acceleration_q24()),
-            lags: Lags {
-                position: Lag::ZERO,
-                velocity: Lag::ZERO,
-                acceleration: if at_rest { Lag::ZERO } else { class.lag },
-            },
-            variances,
-        }
-    }
-
-    /// The variances of a class, and what the map's residual of long wave adds at a velocity in Q11.20.
-    #[inline]
-    fn with_long_wave(&self, class: &Class, velocity: i32) -> Variances {
-        let speed = velocity.unsigned_abs();
-        let slope = u64::from(self.config.wave_slope);
-        // Q20 · Q24 for 24, and times Q32 once more.
-        let of_velocity = u64::from(speed).wrapping_mul(slope).wrapping_shr(20) as u32;
-        let wave = u64::from(speed).wrapping_mul(u64::from(self.config.wave_number));
-        let wave = wave.wrapping_shr(20) as u32;
-        let of_acceleration = u64::from(of_velocity)
-            .wrapping_mul(u64::from(wave))
-            .wrapping_shr(32) as u32;
-        Variances {
-            velocity: added(class.variances.velocity, of_velocity),
-            acceleration: added(class.variances.acceleration, of_acceleration),
-        }
-    }
 }
 
 /// While at rest the disturbance takes up 2⁻ⁿ of the jerk in a tick.
 const REST_SHIFT: u32 = 5;
-
-/// Largest deviation by the long wave, 128 in Q8.24: its square and the variance of a class fit their format.
-const MOST_DEVIATION: u32 = 1 << 31;
-
-/// `variance` and the square of a deviation in Q8.24.
-#[inline]
-fn added(variance: Variance, deviation: u32) -> Variance {
-    let deviation = if deviation > MOST_DEVIATION {
-        MOST_DEVIATION
-    } else {
-        deviation
-    };
-    let square = u64::from(deviation).wrapping_mul(u64::from(deviation));
-    Variance::from_bits(variance.to_bits().wrapping_add(square))
-}
-
-/// Octave of the density of edges: of `edges` now, after `unseen` ticks without. Where it lies between two it is the
-/// lower one: gains for a longer time than that which passed are stable, those for a shorter one need not be.
-#[inline]
-const fn density(edges: u32, unseen: u32) -> i32 {
-    let dense = (edges | 1).ilog2().cast_signed();
-    let sparse = u32::BITS.wrapping_sub(unseen.leading_zeros()).cast_signed();
-    dense.wrapping_sub(sparse).wrapping_add(ONE_A_TICK)
-}
-
-/// Place of a sample relative to the count, d with [`INNOVATION_FRAC`] bits.
-#[inline]
-const fn relative(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
-    // No further than the motion of a tick and the map's correction: the low words suffice.
-    let count = (observation.count as i32).wrapping_shl(Position::FRAC_NBITS);
-    let place = sample.position.to_bits() as i32;
-    (place.wrapping_sub(count) as i64).wrapping_shl(INNOVATION_FRAC - Position::FRAC_NBITS)
-}
-
-/// Where the sample would lie if every edge lay at its whole number.
-#[inline]
-const fn nominal(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
-    let delta = observation.delta as i64;
-    if sample.edges == 1 {
-        if delta < 0 { ONE } else { 0 }
-    } else {
-        ONE.wrapping_sub(delta.wrapping_shl(INNOVATION_FRAC))
-            .wrapping_shr(1)
-    }
-}
-
-/// An innovation within ±8 d, which is that of a motion and not of a jump of the count.
-#[inline]
-const fn credible(innovation: i64) -> Option<i32> {
-    let low = innovation as i32;
-    if low as i64 == innovation {
-        Some(low)
-    } else {
-        None
-    }
-}

@@ -2,7 +2,7 @@
 //!
 //! Formats are such that the high word of a state is the output's format, so that products are of 32 × 32 bits.
 
-use super::config::{GainScale, Response};
+use super::classes::{GainScale, Response};
 use crate::estimator::saturate;
 use crate::units::Position;
 

@@ -1,7 +1,8 @@
 //! Which model runs, and the line on which a command travels to the drive.
 
 use super::Model;
-use super::config::{MAX_DELAY, Response, SIGMA_FRAC, Supervision};
+use super::classes::Response;
+use super::config::{MAX_DELAY, SIGMA_FRAC, Supervision};
 use super::motion::{INNOVATION_FRAC, Motion};
 use crate::units::Command;
 
