@@ -77,14 +77,25 @@ impl Dynamics {
         )
     }
 
-    /// The filter that corrects every `gap` ticks by a measurement of variance `variance`; `guess` is the
+    /// F and Q over `gap` ticks, a power of two.
+    #[inline(never)]
+    fn over(&self, gap: u32) -> (Matrix, Matrix) {
+        let (mut transition, mut noise) = (self.transition(), self.noise());
+        for _ in 0..gap.ilog2() {
+            noise = propagated(&noise, &transition, &noise);
+            transition = product(&transition, &transposed(&transition));
+        }
+        (transition, noise)
+    }
+
+    /// The filter that corrects every `gap` ticks, a power of two, by a measurement of variance `variance`; `guess` is the
     /// covariance after a correction that the iteration starts from, and becomes that which it ends at.
     #[inline(never)]
     pub fn steady(&self, gap: u32, variance: f64, guess: &mut Matrix) -> Steady {
-        let (transition, noise) = (self.transition(), self.noise());
+        let (transition, noise) = self.over(gap);
         let mut gains = [0.0; 4];
         for _ in 0..MAX_ROUNDS {
-            let before = propagated(guess, &transition, &noise, gap);
+            let before = propagated(guess, &transition, &noise);
             let seen = before.map(|row| dot(&row, &MEASURED));
             gains = seen.map(|share| share / (dot(&MEASURED, &seen) + variance));
             let after = corrected(&before, &gains, variance);
@@ -116,11 +127,12 @@ impl Dynamics {
     /// What measurement noise, and a small share of the model's, does to the filter of those gains.
     #[inline(never)]
     fn stated(&self, gap: u32, variance: f64, gains: Vector) -> Steady {
-        let (transition, noise) = (self.transition(), self.calmed(STATED_SHARE).noise());
+        let calm = self.calmed(STATED_SHARE);
+        let (transition, noise) = calm.over(gap);
         let mut covariance = [[0.0; 4]; 4];
         let mut innovation = variance;
         for _ in 0..MAX_ROUNDS {
-            let before = propagated(&covariance, &transition, &noise, gap);
+            let before = propagated(&covariance, &transition, &noise);
             innovation = dot(&MEASURED, &before.map(|row| dot(&row, &MEASURED))) + variance;
             let after = corrected(&before, &gains, variance);
             let settled = has_settled(&covariance, &after);
@@ -129,8 +141,12 @@ impl Dynamics {
                 break;
             }
         }
-        let [_, [_, v, ..], [_, _, a, _], _] =
-            propagated(&covariance, &transition, &noise, gap.wrapping_shr(1));
+        // On average it is half a gap old.
+        if gap > 1 {
+            let (transition, noise) = calm.over(gap.wrapping_shr(1));
+            covariance = propagated(&covariance, &transition, &noise);
+        }
+        let [_, [_, v, ..], [_, _, a, _], _] = covariance;
         Steady {
             gains,
             variances: [v, a],
@@ -148,11 +164,15 @@ const STATED_SHARE: f64 = 0.1;
 const MEASURED: Vector = [1.0, -MEAN_AGE, MEAN_AGE * MEAN_AGE / 2.0, 0.0];
 
 #[inline(never)]
-fn propagated(covariance: &Matrix, transition: &Matrix, noise: &Matrix, ticks: u32) -> Matrix {
-    (0..ticks).fold(*covariance, |covariance, _| {
-        let carried = product(&product(transition, &covariance), transition);
-        sum(&carried, noise)
-    })
+fn propagated(covariance: &Matrix, transition: &Matrix, noise: &Matrix) -> Matrix {
+    sum(
+        &product(&product(transition, covariance), transition),
+        noise,
+    )
+}
+
+fn transposed(matrix: &Matrix) -> Matrix {
+    product(&IDENTITY, matrix)
 }
 
 /// (1 − KH)·M·(1 − KH)ᵀ + K·R·Kᵀ.
