@@ -1,10 +1,11 @@
 //! An observer on captures made by hand.
 
 use leadscrew::capture::Unwrapper;
-use leadscrew::edges::{EdgeReader, EdgeSample, EdgeScale};
+use leadscrew::edges::{EdgeConfig, EdgeReader, EdgeSample};
 use leadscrew::estimator::observer::{Config, Estimator};
 use leadscrew::estimator::{Estimate, Evidence};
 use leadscrew::hal::Capture;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Command;
 
 /// Timer clocks in a tick of 1 ms.
@@ -13,7 +14,7 @@ pub const CLOCKS: u32 = 84_000;
 /// An observer behind an encoder input at 1 kHz and 84 MHz.
 pub struct Listener {
     unwrapper: Unwrapper,
-    edges: EdgeReader,
+    edges: EdgeReader<'static>,
     pub observer: Estimator,
 }
 
@@ -29,7 +30,7 @@ impl Listener {
     pub fn new(config: Config) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
-            edges: EdgeReader::new(EdgeScale::new(1000.0, 84e6).unwrap()),
+            edges: EdgeReader::new(EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap()),
             observer: Estimator::new(config),
         }
     }

@@ -3,6 +3,7 @@
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{Config, Model};
 use leadscrew::hal::Encoder as _;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{AxisScale, Command};
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
@@ -91,6 +92,7 @@ fn the_kinematic_model_states_its_lags() {
         let trial = Trial {
             motion,
             encoder: EncoderModel::ideal(),
+            errors: EdgeErrors::default(),
             tick_hz: 1000.0,
             ticks,
             seed: 1,

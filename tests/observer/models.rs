@@ -20,7 +20,9 @@ fn config(params: &ObserverParams) -> Config {
     Config::new(params, AxisScale::new(1000.0, 1000.0).unwrap()).unwrap()
 }
 
-fn in_loop(axis: &leadscrew::axis::Axis) -> &leadscrew::estimator::observer::Estimator {
+fn in_loop<'a>(
+    axis: &'a leadscrew::axis::Axis<'_>,
+) -> &'a leadscrew::estimator::observer::Estimator {
     match axis.estimator() {
         Estimator::Observer(observer) => observer,
         other => panic!("{other:?}"),

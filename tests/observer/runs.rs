@@ -79,7 +79,7 @@ impl Loop {
         self.run_with(EstimatorConfig::Observer(observer)).0
     }
 
-    pub fn run_with(&self, estimator: EstimatorConfig) -> (Vec<Tick>, Axis) {
+    pub fn run_with(&self, estimator: EstimatorConfig) -> (Vec<Tick>, Axis<'static>) {
         let mut params = self.scenario.axis_params(&self.nominal, estimator).unwrap();
         let drive = DriveModel {
             natural_period_s: self.nominal.drive.natural_period_s,
