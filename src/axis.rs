@@ -181,6 +181,12 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
+    /// The estimator in the loop.
+    #[must_use]
+    pub const fn estimator(&self) -> &Estimator {
+        &self.estimator
+    }
+
     /// What went wrong at the encoder so far.
     #[must_use]
     pub const fn capture_health(&self) -> CaptureHealth {

@@ -5,13 +5,14 @@ use core::fmt;
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::hal::Encoder;
 use leadscrew::params::{AxisConfig, AxisParams, MotionParams, OutputParams, ParamError};
 use leadscrew::setpoint::profile::{PlanError, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::telemetry::Record;
 use leadscrew::uncertainty::EdgeErrors;
-use leadscrew::units::{Position, checked};
+use leadscrew::units::{AxisScale, Position, checked};
 
 use crate::machine::{Machine, MachineParams};
 use crate::trace::TraceDigest;
@@ -44,6 +45,24 @@ impl MoveAndBack {
         }
     }
 
+    /// The estimator for `machine`: an observer with the machine's nominal figures and what its encoder does
+    /// without a map in place of any other observer; all others as they are.
+    ///
+    /// # Errors
+    /// The drive or the encoder has no figures that an observer could be tuned on.
+    pub fn tuned(
+        &self,
+        machine: &MachineParams,
+        estimator: EstimatorConfig,
+    ) -> Result<EstimatorConfig, ParamError> {
+        if !matches!(estimator, EstimatorConfig::Observer(_)) {
+            return Ok(estimator);
+        }
+        let scale = AxisScale::new(machine.mount.counts_per_mm, self.tick_hz)?;
+        let config = observer::Config::new(&observer_params(machine), scale)?;
+        Ok(EstimatorConfig::Observer(config))
+    }
+
     /// An axis tuned on the drive's nominal figures, for this move on `machine`.
     ///
     /// # Errors
@@ -73,6 +92,38 @@ impl MoveAndBack {
         })
     }
 }
+
+/// What an observer is to count on, on `machine` without an encoder map.
+#[must_use]
+pub fn observer_params(machine: &MachineParams) -> ObserverParams {
+    let (drive, disc, encoder) = (
+        &machine.drive,
+        &machine.encoder.disc,
+        &machine.encoder.encoder,
+    );
+    let edge_variance = encoder.noise_d * encoder.noise_d
+        + disc.line_sigma_d * disc.line_sigma_d
+        + disc.edge_sigma_d * disc.edge_sigma_d
+        + disc.phase_offset_d * disc.phase_offset_d / 3.0;
+    // Slopes add up as squares; that of the second harmonic is twice as steep.
+    let second = 2.0 * disc.second_harmonic_d;
+    let waves = disc.eccentricity_d * disc.eccentricity_d + second * second;
+    ObserverParams {
+        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
+        natural_period_s: drive.natural_period_s,
+        damping: drive.damping,
+        delay_s: drive.delay_s,
+        offset: drive.offset,
+        edge_noise_d: libm::sqrt(edge_variance).max(LEAST_EDGE_NOISE_D),
+        time_noise_s: encoder.noise_s,
+        map_residual_d: libm::sqrt(waves / 2.0),
+        map_wave_mm: disc.edges_per_revolution / machine.mount.counts_per_mm,
+        ..ObserverParams::default()
+    }
+}
+
+/// Edge noise that even an ideal encoder is given: what the timer's clock leaves at 150 d/tick.
+const LEAST_EDGE_NOISE_D: f64 = 0.002;
 
 /// Why a scenario cannot run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,7 +227,7 @@ impl Setup<'_> {
         estimator: EstimatorConfig,
         seed: u64,
     ) -> Result<Self, ScenarioError> {
-        let axis = scenario.axis_params(params, estimator)?;
+        let axis = scenario.axis_params(params, scenario.tuned(params, estimator)?)?;
         let config = axis.validate()?;
         Ok(Self {
             script: Script::new(scenario, axis.motion.counts_per_mm, &config)?,

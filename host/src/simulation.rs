@@ -82,7 +82,9 @@ impl RunSpec {
     pub fn run(&self) -> Result<Run, ScenarioError> {
         let mut simulation =
             Simulation::prepare(&self.scenario, &self.machine, self.estimator, self.seed)?;
-        let configs = all_estimators();
+        // One that only listens need not fit the machine: an observer then is that of the 16K20F3.
+        let tuned = |config| self.scenario.tuned(&self.machine, config).unwrap_or(config);
+        let configs: Vec<_> = all_estimators().into_iter().map(tuned).collect();
         let mut listening = Listening::new(&configs, simulation.axis.config().edges);
         let mut listeners: Vec<_> = configs.into_iter().map(Listener::new).collect();
         let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));

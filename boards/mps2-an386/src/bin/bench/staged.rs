@@ -76,7 +76,8 @@ impl Staged {
             .is_ok()
     }
 
-    /// One tick on the capture; counts go to `samples` if there are any.
+    /// One tick on the capture; counts go to `samples` if there are any. The estimators are given the newest edge
+    /// alone, so that the figures do not depend on the speed; with all edges they are in the whole step.
     pub fn step(
         &mut self,
         tick: u32,
@@ -84,6 +85,10 @@ impl Staged {
         counter: &mut Counter,
         samples: Option<&mut StageSamples>,
     ) {
+        let capture = &Capture {
+            edges: [&[], &[]],
+            ..*capture
+        };
         let mut observation = None;
         let unwrap = counter.count(|| observation = Some(self.unwrapper.unwrap(capture)));
         let Some(observation) = observation else {
