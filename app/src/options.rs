@@ -1,5 +1,7 @@
 //! Options of a run, as words `key=value` on the image's command line.
 
+use leadscrew::estimator::EstimatorConfig;
+
 /// Lowest tick rate, in Hz.
 pub const TICK_HZ_MIN: u32 = 100;
 /// Highest tick rate, in Hz.
@@ -14,6 +16,8 @@ pub struct Options {
     pub tick_hz: u32,
     /// Ticks to run; `None` leaves it to the scenario.
     pub ticks: Option<u32>,
+    /// Name of the estimator in the loop.
+    pub estimator: &'static str,
 }
 
 impl Default for Options {
@@ -21,6 +25,7 @@ impl Default for Options {
         Self {
             tick_hz: 1_000,
             ticks: None,
+            estimator: "exponential",
         }
     }
 }
@@ -31,8 +36,10 @@ impl Default for Options {
 pub enum OptionError {
     /// Not of the form `key=value`.
     NotKeyValue,
-    /// The keys are `tick-hz` and `ticks`.
+    /// The keys are `tick-hz`, `ticks` and `estimator`.
     UnknownKey,
+    /// There is no estimator of that name.
+    UnknownEstimator,
     /// Not a whole number from `min` to `max`.
     OutOfRange {
         /// Smallest value allowed.
@@ -49,10 +56,16 @@ impl Options {
         match key {
             "tick-hz" => self.tick_hz = number(value, TICK_HZ_MIN, TICK_HZ_MAX)?,
             "ticks" => self.ticks = Some(number(value, 1, TICKS_MAX)?),
+            "estimator" => self.estimator = name(value)?,
             _ => return Err(OptionError::UnknownKey),
         }
         Ok(())
     }
+}
+
+fn name(text: &str) -> Result<&'static str, OptionError> {
+    let known = EstimatorConfig::NAMES.iter().find(|name| **name == text);
+    known.copied().ok_or(OptionError::UnknownEstimator)
 }
 
 fn number(text: &str, min: u32, max: u32) -> Result<u32, OptionError> {
@@ -73,11 +86,13 @@ mod tests {
         let mut options = Options::default();
         options.apply("tick-hz=2500").unwrap();
         options.apply("ticks=7").unwrap();
+        options.apply("estimator=observer").unwrap();
         assert_eq!(
             options,
             Options {
                 tick_hz: 2_500,
-                ticks: Some(7)
+                ticks: Some(7),
+                estimator: "observer",
             }
         );
     }
@@ -91,6 +106,7 @@ mod tests {
         };
         assert_eq!(refused("fast"), OptionError::NotKeyValue);
         assert_eq!(refused("tickhz=1"), OptionError::UnknownKey);
+        assert_eq!(refused("estimator=best"), OptionError::UnknownEstimator);
         for value in ["0", "99", "40001", "1e3", "-5", "", "99999999999"] {
             let word = std::format!("tick-hz={value}");
             assert_eq!(refused(&word), tick_hz, "{word}");

@@ -15,8 +15,8 @@ fn repeats() -> usize {
 }
 
 /// Digest of the standard move on the host, as the firmware logs it.
-fn host_digest(tick_hz: u32) -> String {
-    let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
+fn host_digest(tick_hz: u32, estimator: &str) -> String {
+    let estimator = EstimatorConfig::by_name(estimator).unwrap().unwrap();
     let scenario = MoveAndBack::standard(f64::from(tick_hz));
     let machine = MachineParams::z_16k20f3();
     let mut simulation = Simulation::prepare(&scenario, &machine, estimator, 1).unwrap();
@@ -28,10 +28,12 @@ fn host_digest(tick_hz: u32) -> String {
     )
 }
 
-fn the_same_in_qemu(tick_hz: u32) {
-    let expected = host_digest(tick_hz);
-    let run = Run::new(build("axis", "firmware").unwrap()).arg(format!("tick-hz={tick_hz}"));
-    for _ in 0..repeats() {
+fn the_same_in_qemu(tick_hz: u32, estimator: &str, repeats: usize) {
+    let expected = host_digest(tick_hz, estimator);
+    let run = Run::new(build("axis", "firmware").unwrap())
+        .arg(format!("tick-hz={tick_hz}"))
+        .arg(format!("estimator={estimator}"));
+    for _ in 0..repeats {
         let output = run.run().unwrap();
         assert_eq!(output.exit_code, 0, "{output}");
         let found = output.log_lines.iter().any(|line| line.message == expected);
@@ -47,11 +49,18 @@ fn the_same_in_qemu(tick_hz: u32) {
 #[test]
 #[ignore = "needs QEMU; run by cargo xtask test"]
 fn the_standard_move_at_1000_hz_is_that_of_the_host() {
-    the_same_in_qemu(1000);
+    the_same_in_qemu(1000, "exponential", repeats());
 }
 
 #[test]
 #[ignore = "needs QEMU; run by cargo xtask test"]
 fn the_standard_move_at_2500_hz_is_that_of_the_host() {
-    the_same_in_qemu(2500);
+    the_same_in_qemu(2500, "exponential", repeats());
+}
+
+#[test]
+#[ignore = "needs QEMU; run by cargo xtask test"]
+fn estimation_from_edge_times_is_that_of_the_host() {
+    the_same_in_qemu(1000, "polynomial", 1);
+    the_same_in_qemu(1000, "observer", 1);
 }

@@ -13,10 +13,10 @@ use leadscrew_hal_mock::trace::TraceDigest;
 /// Seed of the encoder's errors and of all noise.
 const SEED: u64 = 1;
 
-/// The standard move on the reference machine, exponential smoothing in the loop.
+/// The standard move on the reference machine, with the estimator asked for in the loop.
 pub fn standard_move(options: &Options) -> Result<Setup<'static>, ScenarioError> {
     let scenario = MoveAndBack::standard(f64::from(options.tick_hz));
-    let estimator = EstimatorConfig::by_name("exponential")?.expect("it is in the list");
+    let estimator = EstimatorConfig::by_name(options.estimator)?.expect("it is in the list");
     Setup::new(&scenario, &MachineParams::z_16k20f3(), estimator, SEED)
 }
 
