@@ -2,6 +2,7 @@
 //! encoder, with reports and plots.
 
 pub mod accuracy;
+pub mod calibration;
 pub mod cli;
 pub mod command;
 pub mod error;

@@ -53,7 +53,7 @@ impl Direction {
     }
 
     /// The one of a pair forward, backward.
-    const fn of_pair<T>(self, pair: &[T; 2]) -> &T {
+    pub(crate) const fn of_pair<T>(self, pair: &[T; 2]) -> &T {
         let [forward, backward] = pair;
         match self {
             Self::Forward => forward,
