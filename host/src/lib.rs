@@ -14,6 +14,7 @@ mod progress;
 pub mod recording;
 pub mod report;
 pub mod sampler;
+pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;
 pub mod truth;

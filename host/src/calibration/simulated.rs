@@ -1,70 +1,13 @@
-//! Learning an encoder map on the host: the core's own calibration, on simulated runs.
+//! Learning from simulated runs.
 
-use leadscrew::calibration::{Learned, Learner, Progress, Refusal, Requirements, RunPlan, Work};
+use leadscrew::calibration::{Learner, Progress, Refusal, Requirements, RunPlan};
 use leadscrew::capture::Unwrapper;
 use leadscrew::encoder_map::Form;
-use leadscrew::encoder_map::error::EncodeError;
-use leadscrew::encoder_map::format::image_len;
 use leadscrew::units::RangeError;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene::{Motion, Ripple, Scene};
-use thiserror::Error;
 
-/// Why no map was learned.
-#[derive(Debug, Error)]
-pub enum CalibrationError {
-    /// The data do not suffice.
-    #[error("{0}")]
-    Refused(#[from] Refusal),
-    /// What was learned fits no map.
-    #[error("{0}")]
-    Encode(#[from] EncodeError),
-    /// A simulated run that cannot be.
-    #[error("{0}")]
-    Range(#[from] RangeError),
-}
-
-/// Work memory of a learner, on the heap.
-#[derive(Debug)]
-pub struct Memory {
-    sums: Vec<i32>,
-    mean: Vec<i16>,
-}
-
-impl Memory {
-    /// For an encoder of `edges` a revolution.
-    #[must_use]
-    pub fn new(edges: u32) -> Self {
-        Self {
-            sums: vec![0; edges as usize],
-            mean: vec![0; edges as usize],
-        }
-    }
-
-    /// A learner of this encoder, times by a timer of `timer_hz`.
-    ///
-    /// # Errors
-    /// Edges that cannot be mapped.
-    pub fn learner(&mut self, timer_hz: f64) -> Result<Learner<'_>, Refusal> {
-        let edges = self.sums.len() as u32;
-        let work = Work {
-            sums: &mut self.sums,
-            mean: &mut self.mean,
-        };
-        Learner::new(edges, timer_hz, work)
-    }
-}
-
-/// The image of the map that was learned.
-///
-/// # Errors
-/// Errors that fit no map.
-pub fn image(learned: &Learned<'_>, form: Form) -> Result<Vec<u8>, EncodeError> {
-    let mut image = vec![0; image_len(learned.edges_per_revolution() as u32, form)];
-    let length = learned.encode(form, &mut image)?;
-    image.truncate(length);
-    Ok(image)
-}
+use super::{CalibrationError, Memory, image};
 
 /// How simulated runs are made.
 #[derive(Clone, Debug)]
