@@ -141,9 +141,10 @@ impl Tape {
         self.end = self.at(capture.sampled_at);
     }
 
-    /// A reading of the scene's timer not before its last sample, ns.
+    /// A reading of the scene's timer near its last sample, ns. Noise may stamp an edge a little before it.
     fn at(&self, time: u32) -> u64 {
-        let clocks = self.clocks + u64::from(time.wrapping_sub(self.clocks as u32));
+        let since = time.wrapping_sub(self.clocks as u32).cast_signed();
+        let clocks = self.clocks.saturating_add_signed(i64::from(since));
         self.scene_start + (clocks as f64 / self.timer_hz * CLOCK_HZ as f64).round() as u64
     }
 
