@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use leadscrew::estimator::EstimatorConfig;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 the job failed, 2 bad usage";
@@ -31,6 +31,10 @@ pub enum Command {
     Sim(SimArgs),
     /// Decodes a logic-analyser capture of an encoder and runs the estimators on it
     Replay(ReplayArgs),
+    /// Learns from captures of steady feeds where the edges of an encoder really lie
+    CalibrateEncoder(CalibrateEncoderArgs),
+    /// Writes a capture of the simulated encoder on steady feeds, to try the others on
+    SimEncoder(SimEncoderArgs),
 }
 
 /// Where results go.
@@ -133,4 +137,121 @@ pub struct ReplayArgs {
     /// Where results go
     #[command(flatten)]
     pub output: OutputArgs,
+}
+
+/// How much a map knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MapForm {
+    /// Every edge
+    Full,
+    /// The long waves of a revolution and the four phases
+    Coarse,
+    /// The four phases alone
+    Phases,
+}
+
+/// Arguments of `calibrate-encoder`.
+#[derive(Debug, Args)]
+pub struct CalibrateEncoderArgs {
+    /// Captures, each VCD, sigrok CSV or Saleae Logic 2 CSV: of steady feeds both ways at two speeds, 16 revolutions
+    /// each or more
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// Edges of a revolution: 4 times the lines (512 to 65536)
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub edges_per_rev: u32,
+    /// Where the map goes
+    #[arg(long, value_name = "MAP")]
+    pub out: PathBuf,
+    /// How much the map is to know
+    #[arg(long, value_name = "FORM", value_enum, default_value = "full")]
+    pub form: MapForm,
+    /// Channel A: its exact name, else its index from 0 [default: the first one-bit signal]
+    #[arg(long, value_name = "CH")]
+    pub a: Option<String>,
+    /// Channel B [default: the second one-bit signal]
+    #[arg(long, value_name = "CH")]
+    pub b: Option<String>,
+    /// Channel Z (index) [default: none, for which only phases can be learned]
+    #[arg(long, value_name = "CH")]
+    pub z: Option<String>,
+    /// Sampling rate of a sigrok CSV that does not state it, Hz
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub samplerate: Option<u64>,
+    /// Control rate at which the core samples the captures, Hz (100 to 40000)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1000.0,
+        allow_negative_numbers = true
+    )]
+    pub tick_hz: f64,
+    /// The captures are of a free flywheel that slows down
+    #[arg(long)]
+    pub coast: bool,
+    /// Take runs in one direction; the hysteresis stays unknown
+    #[arg(long)]
+    pub accept_one_direction: bool,
+    /// Take runs at one speed; nothing then shows a motion that trembles in step with the shaft
+    #[arg(long)]
+    pub accept_one_speed: bool,
+    /// Most that runs may differ in a wave, and an edge of the map may be uncertain by, d
+    #[arg(
+        long,
+        value_name = "D",
+        default_value_t = 0.01,
+        allow_negative_numbers = true
+    )]
+    pub tolerance: f64,
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the errors before and after along the revolution to FILE.svg or FILE.png, and by wavelength beside
+    /// it to FILE-waves
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `sim-encoder`.
+#[derive(Debug, Args)]
+pub struct SimEncoderArgs {
+    /// Where the capture goes: VCD with the signals A, B, Z, in ns
+    #[arg(long, value_name = "FILE.vcd")]
+    pub out: PathBuf,
+    /// Velocities of the runs, d/ms; negative backward
+    #[arg(
+        long,
+        value_name = "V,…",
+        value_delimiter = ',',
+        default_value = "83.3,-83.3,66.7,-66.7",
+        allow_negative_numbers = true
+    )]
+    pub velocities: Vec<f64>,
+    /// Length of each run, revolutions
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 44.0,
+        allow_negative_numbers = true
+    )]
+    pub revolutions: f64,
+    /// Edges of a revolution: 4 times the lines (16 to 16384)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 10_000,
+        allow_negative_numbers = true
+    )]
+    pub edges_per_rev: u32,
+    /// Seed of the encoder's errors and of all noise
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
+    pub seed: u64,
+    /// Feeds without the wobble and the drift of a real axis
+    #[arg(long)]
+    pub steady: bool,
 }

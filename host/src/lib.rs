@@ -2,6 +2,7 @@
 //! encoder, with reports and plots.
 
 pub mod accuracy;
+pub mod calibration;
 pub mod cli;
 pub mod command;
 pub mod error;
@@ -13,6 +14,7 @@ mod progress;
 pub mod recording;
 pub mod report;
 pub mod sampler;
+pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;
 pub mod truth;

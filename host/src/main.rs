@@ -5,13 +5,15 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
-use leadscrew_host::command::{demo, replay, sim};
+use leadscrew_host::command::{calibrate_encoder, demo, replay, sim, sim_encoder};
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         None => demo::run(),
         Some(Command::Sim(args)) => sim::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
+        Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
+        Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

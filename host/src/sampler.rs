@@ -72,6 +72,15 @@ impl<'a> Sampler<'a> {
         }
     }
 
+    /// The same with times of a clock of `timer_hz`, so that recordings of different clocks go together.
+    #[must_use]
+    pub fn with_timer_hz(self, timer_hz: u64) -> Self {
+        Self {
+            timer_hz: timer_hz.clamp(TIMER_HZ.0, TIMER_HZ.1),
+            ..self
+        }
+    }
+
     /// Ticks in the recording.
     #[must_use]
     pub const fn ticks(&self) -> u64 {

@@ -1,21 +1,13 @@
 //! The result: what goes into an encoder map.
 
 use super::report::Report;
+use crate::encoder_map::Direction;
 
 /// Fractional bits of a learned error.
 const ERROR_FRAC: i32 = 12;
 
 /// Fractional bits of a placement.
 const PLACEMENT_FRAC: i32 = 16;
-
-/// Direction of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// Counts go up.
-    Forward,
-    /// Counts go down.
-    Backward,
-}
 
 /// What depends on direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,12 +80,8 @@ impl Learned<'_> {
     /// In use boundary 0 is the multiple of 4 nearest to the latched count less this.
     #[must_use]
     pub fn index_front(&self, direction: Direction) -> Option<i16> {
-        let [forward, backward] = self.directions;
-        match direction {
-            Direction::Forward => forward,
-            Direction::Backward => backward,
-        }
-        .map(|known| known.front as i16)
+        let known = *direction.of_pair(&self.directions);
+        known.map(|known| known.front as i16)
     }
 
     /// What the map is worth.

@@ -36,6 +36,7 @@ mod average;
 mod bands;
 mod combine;
 mod compare;
+mod image;
 mod index;
 mod learned;
 mod pattern;
@@ -52,7 +53,7 @@ mod timing;
 use crate::capture::Observation;
 
 pub use self::bands::Bands;
-pub use self::learned::{Direction, Learned};
+pub use self::learned::Learned;
 pub use self::plan::{MEASURING_REVOLUTIONS, MIN_REVOLUTIONS, Progress, RunMotion, RunPlan};
 pub use self::refusal::Refusal;
 pub use self::report::{
@@ -67,7 +68,7 @@ use self::run::Run;
 /// Fewest edges per revolution.
 pub const MIN_EDGES: u32 = 512;
 /// Most edges per revolution.
-pub const MAX_EDGES: u32 = 1 << 17;
+pub const MAX_EDGES: u32 = crate::encoder_map::EDGES.1;
 
 /// Work memory, an entry an edge in each slice. Its contents at the beginning do not matter.
 #[derive(Debug)]

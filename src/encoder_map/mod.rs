@@ -3,7 +3,8 @@
 //! An encoder's edges lie beside their places by a tenth of a discrete and more, the same way in every
 //! revolution. An [`EncoderMap`] is a view of a byte image (flash or file) that says by how much, for each
 //! edge and for either direction; [`tie`] finds by the index pulse which edge is which; [`format`] is the
-//! image itself, [`encode`] makes it from measured errors, [`error`] says what kept it from that.
+//! image itself, [`encode`] makes it from measured errors, [`error`] says what kept it from that; [`check`] tells
+//! whether a map belongs to the encoder that turns.
 //!
 //! Boundary k of the count, passed in direction D, lies at k + e d with e the sum of
 //!
@@ -16,6 +17,7 @@
 //! A map without index has phases alone, one for small memories phases and base. Before the index is
 //! found the phases of any map hold all the same, since the two low bits of the count tell the phase.
 
+pub mod check;
 pub mod encode;
 pub mod error;
 pub mod format;
@@ -53,7 +55,7 @@ impl Direction {
     }
 
     /// The one of a pair forward, backward.
-    const fn of_pair<T>(self, pair: &[T; 2]) -> &T {
+    pub(crate) const fn of_pair<T>(self, pair: &[T; 2]) -> &T {
         let [forward, backward] = pair;
         match self {
             Self::Forward => forward,

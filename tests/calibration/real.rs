@@ -1,6 +1,7 @@
 //! The encoder "real" on a shaft that trembles by 1.7 d with a period of 90 ticks and drifts by 3 d.
 
-use leadscrew::calibration::{Direction, Learned, Learner, Refusal, Requirements, RunPlan};
+use leadscrew::calibration::{Learned, Learner, Refusal, Requirements, RunPlan};
+use leadscrew::encoder_map::Direction;
 
 use crate::generator::{Memory, Shaft, learn, ticks};
 use crate::motion::{Dice, Motion};

@@ -1,6 +1,7 @@
 //! Runs of one encoder put together: order, captures apart, directions.
 
-use leadscrew::calibration::{Direction, Refusal, Requirements, RunPlan};
+use leadscrew::calibration::{Refusal, Requirements, RunPlan};
+use leadscrew::encoder_map::Direction;
 
 use crate::generator::{Memory, Shaft, Tick, learn, ticks};
 use crate::motion::Motion;

@@ -1,7 +1,8 @@
 //! The simulator's encoder, from its captures.
 
-use leadscrew::calibration::{Direction, Learner, Progress, Requirements, RunPlan};
+use leadscrew::calibration::{Learner, Progress, Requirements, RunPlan};
 use leadscrew::capture::Unwrapper;
+use leadscrew::encoder_map::Direction;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scene;
 

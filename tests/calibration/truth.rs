@@ -1,6 +1,7 @@
 //! A learned map against what the encoder is made of.
 
-use leadscrew::calibration::{Direction, Learned};
+use leadscrew::calibration::Learned;
+use leadscrew::encoder_map::Direction;
 
 use crate::generator::Shaft;
 

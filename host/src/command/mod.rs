@@ -1,8 +1,10 @@
 //! The subcommands, a file each, and what they share.
 
+pub mod calibrate_encoder;
 pub mod demo;
 pub mod replay;
 pub mod sim;
+pub mod sim_encoder;
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -45,17 +47,7 @@ fn check_outputs(output: &OutputArgs, input: Option<&Path>) -> Result<(), Comman
     let files = [("--csv", &output.csv), ("--plot", &output.plot)];
     for (option, path) in files {
         let Some(path) = path else { continue };
-        let refuse = |why: &str| {
-            let path = path.display();
-            Err(CommandError::Usage(format!("{option} {path}: {why}")))
-        };
-        if input.is_some_and(|input| same_file(input, path)) {
-            return refuse("is the file that is read: choose another name");
-        }
-        // A file is replaced as a whole, which is no way to treat a device or a pipe.
-        if path.metadata().is_ok_and(|found| !found.is_file()) {
-            return refuse("is not an ordinary file: choose the name of a file");
-        }
+        check_replaceable(option, path, input)?;
     }
     match (&output.csv, &output.plot) {
         (Some(csv), Some(plot)) if csv == plot || same_file(csv, plot) => {
@@ -66,6 +58,22 @@ fn check_outputs(output: &OutputArgs, input: Option<&Path>) -> Result<(), Comman
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses a file to write that is the one that is read, or no ordinary file.
+fn check_replaceable(option: &str, path: &Path, input: Option<&Path>) -> Result<(), CommandError> {
+    let refuse = |why: &str| {
+        let path = path.display();
+        Err(CommandError::Usage(format!("{option} {path}: {why}")))
+    };
+    if input.is_some_and(|input| same_file(input, path)) {
+        return refuse("is the file that is read: choose another name");
+    }
+    // A file is replaced as a whole, which is no way to treat a device or a pipe.
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return refuse("is not an ordinary file: choose the name of a file");
+    }
+    Ok(())
 }
 
 /// True for the formats of plots, so that another one is refused before the work and not after it.

@@ -31,6 +31,7 @@ mod saleae_csv;
 mod sigrok_csv;
 mod timeline;
 mod vcd;
+mod write;
 
 use std::fs::File;
 use std::io::BufReader;
