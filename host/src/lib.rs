@@ -4,6 +4,7 @@
 pub mod accuracy;
 pub mod calibration;
 pub mod cli;
+pub mod closed_loop;
 pub mod command;
 pub mod error;
 pub mod figures;
