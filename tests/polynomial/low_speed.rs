@@ -151,3 +151,12 @@ fn wider_windows_stop_at_the_set_maximum() {
         assert!(velocity(estimate) < 0.026, "{estimate:?}");
     }
 }
+
+#[test]
+fn coming_to_rest_is_no_reversal() {
+    // A jerk-limited stop: the quadratic of the last edges, extrapolated, would turn round.
+    let motion = |t: f64| 0.3 + 40.0 - 0.01 / 6.0 * (40.0 - t.min(40.0)).powi(3);
+    for estimate in &run(8, Answer::Newest, &ticks_of(motion, 300))[10..] {
+        assert!(velocity(estimate) >= 0.0, "{estimate:?}");
+    }
+}

@@ -132,6 +132,8 @@ struct Silence {
     ticks_q8: u32,
     /// Count when the last sample came; wraps.
     count: i32,
+    /// The last sample came going backward.
+    is_backward: bool,
 }
 
 impl Silence {
@@ -163,6 +165,7 @@ impl Estimator {
             silence: Silence {
                 ticks_q8: 0,
                 count: 0,
+                is_backward: false,
             },
             dither: Dither {
                 place: 0,
@@ -238,8 +241,8 @@ impl Estimator {
         self.window.clear();
         self.since_step = 0;
         self.silence = Silence {
-            ticks_q8: 0,
             count: self.count,
+            ..Silence::default()
         };
         self.dither.samples = 0;
         self.motion = Motion::steady(self.primed.unwrap_or(0));
@@ -259,6 +262,7 @@ impl Estimator {
         self.silence = Silence {
             ticks_q8: age.wrapping_shr(Span::FRAC_NBITS - 8).cast_unsigned(),
             count: self.count,
+            is_backward: observation.delta < 0,
         };
         let time = self.since_step.wrapping_sub(age);
         // Not after the sampling instant: a sample at that very instant would come to stand on either side.
@@ -324,7 +328,7 @@ impl Estimator {
         }
         let velocity = self.primed.unwrap_or(0);
         self.motion = Motion::steady(velocity);
-        let most = self.within_silence(i32::MAX).cast_unsigned();
+        let most = self.most_in_silence().unwrap_or(i32::MAX).cast_unsigned();
         let square = u64::from(most.min(1 << 24)).wrapping_mul(u64::from(most.min(1 << 24)));
         // Uniform within ±most: a third of the square.
         let variance = Variance::from_bits(
@@ -478,14 +482,24 @@ impl Estimator {
         }
     }
 
-    /// A velocity no larger than the silence since the last edge allows: one discrete, and half a one for displaced
-    /// edges.
+    /// A velocity no larger than the silence since the last edge allows, one discrete and half a one for displaced edges,
+    /// and not turned round: that would be seen on an edge.
     #[inline]
     fn within_silence(&self, velocity: i32) -> i32 {
+        match self.most_in_silence() {
+            None => velocity,
+            Some(most) if self.silence.is_backward => velocity.clamp(most.wrapping_neg(), 0),
+            Some(most) => velocity.clamp(0, most),
+        }
+    }
+
+    /// The largest velocity after a silence of more than a tick, Q12.20 d/tick.
+    #[inline]
+    fn most_in_silence(&self) -> Option<i32> {
         const TICK_Q8: u32 = 1 << 8;
         let ticks = self.silence.ticks_q8;
         if ticks <= TICK_Q8 {
-            return velocity;
+            return None;
         }
         let moved = self.count.wrapping_sub(self.silence.count).unsigned_abs();
         let halves = moved.min(MOST_MOVED).wrapping_mul(2).wrapping_add(3);
@@ -493,9 +507,8 @@ impl Estimator {
         let most = halves
             .wrapping_shl(Velocity::FRAC_NBITS + 8 - 1)
             .checked_div(ticks)
-            .unwrap_or(0)
-            .cast_signed();
-        velocity.clamp(most.wrapping_neg(), most)
+            .unwrap_or(0);
+        Some(most.cast_signed())
     }
 }
 
