@@ -13,6 +13,7 @@ use leadscrew::encoder_map::Form;
 use leadscrew::encoder_map::error::EncodeError;
 use leadscrew::encoder_map::format::image_len;
 use leadscrew::units::RangeError;
+use leadscrew_hal_mock::learning::LearningError;
 use thiserror::Error;
 
 /// Why no map was learned.
@@ -105,4 +106,13 @@ pub fn image(learned: &Learned<'_>, form: Form) -> Result<Vec<u8>, EncodeError> 
     let length = learned.encode(form, &mut image)?;
     image.truncate(length);
     Ok(image)
+}
+
+impl From<LearningError> for CalibrationError {
+    fn from(error: LearningError) -> Self {
+        match error {
+            LearningError::Range(error) => Self::Range(error),
+            LearningError::Refused(refusal) => Self::Refused(refusal),
+        }
+    }
 }
