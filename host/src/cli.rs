@@ -235,7 +235,7 @@ pub struct SimEncoderArgs {
         allow_negative_numbers = true
     )]
     pub revolutions: f64,
-    /// Edges of a revolution: 4 times the lines (16 to 16384)
+    /// Edges of a revolution: 4 times the lines (512 to 16384)
     #[arg(
         long,
         value_name = "N",
