@@ -2,15 +2,18 @@
 
 use leadscrew::calibration::Requirements;
 use leadscrew::capture::Unwrapper;
+use leadscrew::edges::{EdgeConfig, EdgeReader};
 use leadscrew::encoder_map::check::{MapCheck, Verdict};
 use leadscrew::encoder_map::encode::{MapContent, encode};
 use leadscrew::encoder_map::format::image_len;
 use leadscrew::encoder_map::{Direction, EncoderMap, Form, Residual};
+use leadscrew::hal::Capture;
+use leadscrew::uncertainty::EdgeErrors;
 use leadscrew_hal_mock::disc::DiscParams;
 use leadscrew_hal_mock::encoder::{Encoder, EncoderModel};
 use leadscrew_hal_mock::scene::{Motion, Scene};
 use leadscrew_host::calibration::{
-    self, Options, Procedure, learn_from_recordings, learn_simulated,
+    self, Options, Procedure, learn_from_recordings, learn_simulated, map_fit,
 };
 use leadscrew_host::sampler::Sampler;
 use leadscrew_host::sim_encoder::record;
@@ -236,6 +239,12 @@ fn stretches_of_one_speed_are_found_between_ramps_and_stops() {
         .collect();
     assert_eq!(short.len(), 1);
     assert!((short[0].stretch.revolutions - 9.0).abs() <= 0.5);
+    let map = EncoderMap::from_bytes(&learned.image).unwrap();
+    let own = map_fit(&recordings[0], 1000.0, map);
+    assert_eq!(own.verdict(map.form()), Verdict::Fits, "{own:?}");
+    let other = record(&model, 4, &[feed(85.0, 100)]).unwrap();
+    let other = map_fit(&other, 1000.0, map);
+    assert_eq!(other.verdict(map.form()), Verdict::Useless, "{other:?}");
     let curve = learned.curve.unwrap();
     let rms = |errors: &[f64]| {
         (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
@@ -277,4 +286,52 @@ fn a_simulated_recording_has_the_edges_of_the_simulator() {
         fronts.extend(capture.index.map(|latch| i64::from(latch.count) + start));
     }
     assert_eq!(fronts, [10_000, 10_002]);
+}
+
+/// Standard deviation of where single edges are said to lie against where the shaft was, over a revolution.
+fn edge_sigma(map: Option<EncoderMap<'_>>, model: &EncoderModel, velocity: f64) -> f64 {
+    let start = -10.0 * velocity;
+    let mut scene = Scene::new(Motion::Steady { velocity }, model, 1000.0, start, 3).unwrap();
+    let scale = EdgeConfig::new(1000.0, model.encoder.timer_hz, &EdgeErrors::default()).unwrap();
+    let mut reader = EdgeReader::new(scale);
+    reader.set_map(map);
+    let mut unwrapper = Unwrapper::new();
+    let mut errors = Vec::new();
+    for tick in 0..12 + (10_000.0 / velocity.abs()) as u32 {
+        scene.step();
+        // The last edge alone: no mean over those of a tick.
+        let capture = Capture {
+            edges: [&[], &[]],
+            ..scene.capture()
+        };
+        let observation = unwrapper.unwrap(&capture);
+        reader.note(&observation);
+        if tick >= 12 {
+            let sample = reader.sample(&observation).unwrap();
+            let then = scene.truth().position - velocity * sample.age.to_num::<f64>();
+            errors.push(sample.position.to_num::<f64>() - then);
+        }
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    let squares: f64 = errors.iter().map(|error| (error - mean).powi(2)).sum();
+    (squares / errors.len() as f64).sqrt()
+}
+
+#[test]
+fn edges_of_other_runs_lie_where_the_learned_map_says() {
+    let model = EncoderModel::real();
+    let image = learn_simulated(&model, 3, &Procedure::default()).unwrap();
+    let map = EncoderMap::from_bytes(&image).unwrap();
+    for velocity in [150.0, -150.0, 21.7, -21.7, 3.3, -3.3] {
+        let (without, with) = (
+            edge_sigma(None, &model, velocity),
+            edge_sigma(Some(map), &model, velocity),
+        );
+        // Noise of place and time, the step of the timer.
+        let noise: f64 = 0.005_f64
+            .hypot(velocity * 2e-5)
+            .hypot(velocity / 84_000.0 / 3.46);
+        assert!(without > 0.9, "{velocity}: {without}");
+        assert!(with < 0.01_f64.hypot(noise), "{velocity}: {with}");
+    }
 }
