@@ -19,6 +19,7 @@ pub mod disc;
 pub mod drive;
 pub mod encoder;
 pub mod faults;
+pub mod learning;
 pub mod machine;
 pub mod play;
 mod random;

@@ -153,7 +153,7 @@ pub enum MapForm {
 /// Arguments of `calibrate-encoder`.
 #[derive(Debug, Args)]
 pub struct CalibrateEncoderArgs {
-    /// Captures, each VCD, sigrok CSV or Saleae Logic 2 CSV: of steady feeds both ways at two speeds, 16 revolutions
+    /// Captures, each VCD, sigrok CSV or Saleae Logic 2 CSV: of steady feeds both ways at two speeds, 17 revolutions
     /// each or more
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
@@ -235,7 +235,7 @@ pub struct SimEncoderArgs {
         allow_negative_numbers = true
     )]
     pub revolutions: f64,
-    /// Edges of a revolution: 4 times the lines (16 to 16384)
+    /// Edges of a revolution: 4 times the lines (512 to 16384)
     #[arg(
         long,
         value_name = "N",

@@ -42,10 +42,7 @@ impl Runs {
     /// A parameter out of range.
     pub fn record(&self) -> Result<Recording, RangeError> {
         let edges = self.model.disc.edges_per_revolution;
-        let mut position = START * edges;
-        let mut tape = Tape::new(&self.model);
-        tape.rest();
-        for (number, &velocity) in (1..).zip(&self.velocities) {
+        let run = |(number, &velocity): (u32, &f64)| {
             let motion = if self.sways {
                 Motion::calibration(velocity, edges)
             } else {
@@ -53,17 +50,37 @@ impl Runs {
             };
             // Noise is drawn an edge at a time from the start on: no two runs shall start at one place.
             let revolutions = self.revolutions + (GOLDEN_SECTION * f64::from(number)).fract();
-            let mut scene = Scene::new(motion, &self.model, TICK_HZ, position, self.seed)?;
-            tape.join(&scene.capture());
-            for _ in 0..(revolutions * edges / velocity.abs()) as u64 {
-                scene.step();
-                tape.take(&scene.capture());
-            }
-            tape.rest();
-            position = scene.truth().position;
-        }
-        Ok(tape.finish())
+            (motion, (revolutions * edges / velocity.abs()) as u64)
+        };
+        let motions: Vec<_> = (1..).zip(&self.velocities).map(run).collect();
+        record(&self.model, self.seed, &motions)
     }
+}
+
+/// Records motions, each for so many ticks, one after the other from where the last one ended, with rest between
+/// them; speeds change at once.
+///
+/// # Errors
+/// A parameter out of range.
+pub fn record(
+    model: &EncoderModel,
+    seed: u64,
+    motions: &[(Motion, u64)],
+) -> Result<Recording, RangeError> {
+    let mut position = START * model.disc.edges_per_revolution;
+    let mut tape = Tape::new(model);
+    tape.rest();
+    for &(motion, ticks) in motions {
+        let mut scene = Scene::new(motion, model, TICK_HZ, position, seed)?;
+        tape.join(&scene.capture());
+        for _ in 0..ticks {
+            scene.step();
+            tape.take(&scene.capture());
+        }
+        tape.rest();
+        position = scene.truth().position;
+    }
+    Ok(tape.finish())
 }
 
 /// A recording under way.

@@ -9,11 +9,17 @@ pub use simulated::{Procedure, learn_simulated};
 pub use stretches::{Motion, Stretch};
 
 use leadscrew::calibration::{Learned, Learner, Refusal, Work};
-use leadscrew::encoder_map::Form;
+use leadscrew::capture::Unwrapper;
+use leadscrew::encoder_map::check::{MapCheck, MapFit};
 use leadscrew::encoder_map::error::EncodeError;
 use leadscrew::encoder_map::format::image_len;
+use leadscrew::encoder_map::{EncoderMap, Form};
 use leadscrew::units::RangeError;
+use leadscrew_hal_mock::learning::LearningError;
 use thiserror::Error;
+
+use crate::recording::Recording;
+use crate::sampler::Sampler;
 
 /// Why no map was learned.
 #[derive(Debug, Error)]
@@ -105,4 +111,26 @@ pub fn image(learned: &Learned<'_>, form: Form) -> Result<Vec<u8>, EncodeError> 
     let length = learned.encode(form, &mut image)?;
     image.truncate(length);
     Ok(image)
+}
+
+impl From<LearningError> for CalibrationError {
+    fn from(error: LearningError) -> Self {
+        match error {
+            LearningError::Range(error) => Self::Range(error),
+            LearningError::Refused(refusal) => Self::Refused(refusal),
+        }
+    }
+}
+
+/// How well a map fits the encoder of a recording: what its edges are off their neighbours without the map and
+/// with it.
+#[must_use]
+pub fn map_fit(recording: &Recording, tick_hz: f64, map: EncoderMap<'_>) -> MapFit {
+    let mut sampler = Sampler::new(recording, tick_hz);
+    let mut unwrapper = Unwrapper::new();
+    let mut check = MapCheck::new(map);
+    while let Some(capture) = sampler.next_capture() {
+        check.feed(&unwrapper.unwrap(&capture));
+    }
+    check.fit()
 }

@@ -1,11 +1,10 @@
 //! Learning from simulated runs.
 
-use leadscrew::calibration::{Learner, Progress, Refusal, Requirements, RunPlan};
-use leadscrew::capture::Unwrapper;
+use leadscrew::calibration::Requirements;
 use leadscrew::encoder_map::Form;
-use leadscrew::units::RangeError;
 use leadscrew_hal_mock::encoder::EncoderModel;
-use leadscrew_hal_mock::scene::{Motion, Ripple, Scene};
+use leadscrew_hal_mock::learning::LearningFeed;
+use leadscrew_hal_mock::scene::Ripple;
 
 use super::{CalibrationError, Memory, image};
 
@@ -18,7 +17,7 @@ pub struct Procedure {
     pub speeds: Vec<f64>,
     /// Revolutions that each run averages over.
     pub revolutions: u32,
-    /// The feed wobbles and drifts as that of a real axis does: [`Motion::calibration`]. Otherwise it is steady.
+    /// The feed wobbles and drifts as that of a real axis does: [`leadscrew_hal_mock::scene::Motion::calibration`]. Otherwise it is steady.
     pub sways: bool,
     /// What keeps to the angle of the shaft.
     pub ripple: Ripple,
@@ -58,55 +57,18 @@ pub fn learn_simulated(
     let mut learner = memory.learner(model.encoder.timer_hz)?;
     let both_ways = |&speed: &f64| [speed, -speed];
     for (number, velocity) in (1..).zip(procedure.speeds.iter().flat_map(both_ways)) {
-        // Noise is drawn an edge at a time from the start on: runs must not start alike.
-        let start_d = (GOLDEN_SECTION * f64::from(number)).fract() * edges;
-        let mut scene = procedure.scene(model, seed, velocity, start_d)?;
-        learn_scene(
-            &mut learner,
-            &mut scene,
-            procedure.revolutions,
-            (edges / velocity.abs()) as u64,
-        )?;
+        let feed = LearningFeed {
+            model,
+            seed,
+            number,
+            tick_hz: procedure.tick_hz,
+            velocity,
+            revolutions: procedure.revolutions,
+            sways: procedure.sways,
+            ripple: procedure.ripple,
+        };
+        feed.learn(&mut learner)?;
     }
     let learned = learner.finish(&procedure.requirements)?;
     Ok(image(&learned, procedure.form)?)
-}
-
-/// Its multiples are spread evenly over a revolution.
-const GOLDEN_SECTION: f64 = 0.618_034;
-
-impl Procedure {
-    fn scene(
-        &self,
-        model: &EncoderModel,
-        seed: u64,
-        velocity: f64,
-        start_d: f64,
-    ) -> Result<Scene, RangeError> {
-        let motion = if self.sways {
-            Motion::calibration(velocity, model.disc.edges_per_revolution)
-        } else {
-            Motion::Steady { velocity }
-        };
-        Scene::with_ripple(motion, self.ripple, model, self.tick_hz, start_d, seed)
-    }
-}
-
-/// Adds a run of `revolutions`, each of about `ticks_per_revolution`.
-fn learn_scene(
-    learner: &mut Learner<'_>,
-    scene: &mut Scene,
-    revolutions: u32,
-    ticks_per_revolution: u64,
-) -> Result<(), Refusal> {
-    let mut unwrapper = Unwrapper::new();
-    learner.begin_run(RunPlan::steady(revolutions))?;
-    // One up to the index, two for the speed, one for what wobbles and drifts.
-    for _ in 0..(u64::from(revolutions) + 4) * (ticks_per_revolution + 1) {
-        scene.step();
-        if learner.feed(&unwrapper.unwrap(&scene.capture()))? == Progress::Complete {
-            break;
-        }
-    }
-    learner.end_run().map(|_| ())
 }

@@ -15,8 +15,8 @@ pub enum Motion {
     Coast,
 }
 
-/// Speeds of revolutions in a steady stretch differ by this part at most; a learner allows more.
-const STEADY: f64 = 0.008;
+/// Speeds of revolutions in a steady stretch differ by this part at most: a learner allows 1 % from the first ones.
+const STEADY: f64 = 0.0095;
 /// A flywheel's stretch ends where it has lost this part of its speed.
 const COASTED: f64 = 0.6;
 /// Marks a revolution.

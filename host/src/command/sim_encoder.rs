@@ -11,6 +11,8 @@ use crate::sim_encoder::Runs;
 
 /// Slowest and fastest run, d/ms: several counts a tick, and no more than a velocity tells.
 const SPEEDS: (f64, f64) = (5.0, 2000.0);
+/// Edges a revolution that the simulator has and a map can be learned of.
+const EDGES: (u32, u32) = (512, 16_384);
 /// Most edges: each takes some 50 bytes until it is written.
 const MOST_EDGES: f64 = 2e7;
 
@@ -61,6 +63,12 @@ fn check(args: &SimEncoderArgs) -> Result<(), CommandError> {
     if let Some(velocity) = args.velocities.iter().find(|velocity| !good(velocity)) {
         return usage(format!(
             "--velocities {velocity}: allowed are {slowest} to {fastest} d/ms and the same backward"
+        ));
+    }
+    if !(EDGES.0..=EDGES.1).contains(&args.edges_per_rev) || !args.edges_per_rev.is_multiple_of(4) {
+        return usage(format!(
+            "--edges-per-rev {}: expected a multiple of 4 from {} to {}",
+            args.edges_per_rev, EDGES.0, EDGES.1
         ));
     }
     let edges = args.revolutions * f64::from(args.edges_per_rev) * args.velocities.len() as f64;

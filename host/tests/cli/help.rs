@@ -11,6 +11,8 @@ fn help_names_every_option_its_unit_and_its_default() {
         &[
             "sim",
             "replay",
+            "calibrate-encoder",
+            "sim-encoder",
             "target/leadscrew of the current directory",
             "Exit codes: 0 done, 1 the job failed, 2 bad usage",
         ],
@@ -57,6 +59,33 @@ fn help_names_every_option_its_unit_and_its_default() {
             "--json",
             "--csv",
             "--plot",
+        ],
+    );
+    let calibrate = folder.printed("calibrate-encoder --help");
+    assert_says(
+        &calibrate,
+        &[
+            "<FILES>...",
+            "--edges-per-rev",
+            "--out",
+            "--form",
+            "[default: full]",
+            "--coast",
+            "--accept-one-direction",
+            "--accept-one-speed",
+            "--tolerance",
+            "[default: 0.01]",
+        ],
+    );
+    let sim_encoder = folder.printed("sim-encoder --help");
+    assert_says(
+        &sim_encoder,
+        &[
+            "--velocities",
+            "d/ms",
+            "--revolutions",
+            "--seed",
+            "--steady",
         ],
     );
 }

@@ -36,6 +36,12 @@ pub fn learn(
                     summary,
                 });
             }
+            // An index early in its tick costs a revolution more.
+            Err(Refusal::TooFewRevolutions { found, .. })
+                if (MIN_REVOLUTIONS..revolutions).contains(&found) =>
+            {
+                revolutions = found;
+            }
             // How far a flywheel keeps to a constant deceleration shows on the way.
             Err(Refusal::SpeedChanging { revolution, .. })
                 if options.motion == Motion::Coast && shorter(revolution) < revolutions =>

@@ -6,6 +6,7 @@
 #![no_main]
 
 mod adversary;
+mod calibration;
 mod edges;
 mod one_stamp;
 mod samples;
@@ -41,6 +42,7 @@ fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     one_stamp::run(counter)?;
     adversary::run(counter)?;
     edges::run(counter)?;
+    calibration::run(counter);
     simulator::run(counter)
 }
 
