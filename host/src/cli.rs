@@ -35,6 +35,16 @@ pub enum Command {
     CalibrateEncoder(CalibrateEncoderArgs),
     /// Writes a capture of the simulated encoder on steady feeds, to try the others on
     SimEncoder(SimEncoderArgs),
+    /// Measures the estimators on the scenes of reference: the tables of accuracy
+    Accuracy(AccuracyArgs),
+}
+
+/// Arguments of `accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Where results go.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
-use leadscrew_host::command::{calibrate_encoder, demo, replay, sim, sim_encoder};
+use leadscrew_host::command::{accuracy, calibrate_encoder, demo, replay, sim, sim_encoder};
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
@@ -14,6 +14,7 @@ fn main() -> ExitCode {
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
+        Some(Command::Accuracy(args)) => accuracy::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,12 +9,29 @@ pub struct Spread {
 }
 
 impl Spread {
+    /// Of nothing.
+    pub const NONE: Self = Self {
+        count: 0,
+        squares: 0.0,
+        peak: 0.0,
+    };
+
     /// Takes in a value; not-a-number is passed over.
     pub fn push(&mut self, value: f64) {
         if value.is_finite() {
             self.count += 1;
             self.squares += value * value;
             self.peak = self.peak.max(value.abs());
+        }
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            squares: self.squares + other.squares,
+            peak: self.peak.max(other.peak),
         }
     }
 

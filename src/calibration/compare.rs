@@ -52,7 +52,7 @@ pub fn compare(
     };
     let share_squares: f64 = shares().map(|share| share * share).sum();
     let mut mean = [0.0; SEGMENTS];
-    let mut edge_variance = 1.0 / (12.0 * MEAN_PER_D * MEAN_PER_D);
+    let mut edge_variance = STEP_VARIANCE;
     for (share, record) in shares().zip(records) {
         edge_variance += share * share * record.edge_variance;
         for (mean, segment) in mean.iter_mut().zip(record.segments_d()) {
@@ -80,10 +80,48 @@ pub fn compare(
             }
         }
     }
+    let noise = Floor {
+        // A harmonic has two of the N parts of white noise, or of those of the segments.
+        variance: 2.0 * edge_variance / f64::from(edges)
+            + 2.0 * STEP_VARIANCE * share_squares / SEGMENTS as f64,
+        runs: summaries.len() as f64,
+    };
+    let mut standing = variances.map(|variance| noise.excess(variance));
     if let [only] = summaries {
         variances = of_halves(&only.halves);
+        standing = variances;
     }
-    (disagreement, residual(edges, &variances, edge_variance))
+    (
+        disagreement,
+        residual(edges, &variances, &standing, edge_variance),
+    )
+}
+
+/// Variance of the rounding to 1/[`MEAN_PER_D`] d.
+const STEP_VARIANCE: f64 = 1.0 / (12.0 * MEAN_PER_D * MEAN_PER_D);
+
+/// What white errors of the edges alone make the runs differ by in a harmonic.
+struct Floor {
+    /// Expected variance of the mean, d².
+    variance: f64,
+    runs: f64,
+}
+
+impl Floor {
+    /// What of a harmonic's variance stands out of the noise.
+    ///
+    /// A slope and a curvature are stated of waves that a window cannot average. White errors it does average, and they
+    /// are stated as such: taken for waves as well they would be counted a second time and, since curvature goes with the
+    /// square of the order, as much more than they do. The estimate from n runs has 2(n − 1) degrees of freedom; of
+    /// four runs three harmonics in a thousand exceed it by four standard deviations by chance.
+    fn excess(&self, variance: f64) -> f64 {
+        let deviation = libm::sqrt(1.0 / (self.runs - 1.0).max(1.0));
+        if variance > self.variance * (1.0 + 4.0 * deviation) {
+            variance - self.variance
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Variances of the orders of a single run: the mean of two halves is off by half their difference. What a band
@@ -104,8 +142,13 @@ fn of_halves(halves: &Bands) -> [f64; ORDERS] {
     variances
 }
 
-fn residual(edges: u32, variances: &[f64; ORDERS], edge_variance: f64) -> Residual {
-    let weighted = |power: f64| {
+fn residual(
+    edges: u32,
+    variances: &[f64; ORDERS],
+    standing: &[f64; ORDERS],
+    edge_variance: f64,
+) -> Residual {
+    let weighted = |variances: &[f64; ORDERS], power: f64| {
         let of_order = |(order, &variance): (u32, &f64)| {
             let wave_number = core::f64::consts::TAU * f64::from(order) / f64::from(edges);
             variance * libm::pow(wave_number, power)
@@ -114,9 +157,11 @@ fn residual(edges: u32, variances: &[f64; ORDERS], edge_variance: f64) -> Residu
     };
     Residual {
         edge_sigma_d: libm::sqrt(edge_variance),
-        long_wave_d: weighted(0.0),
-        slope: weighted(2.0),
-        curvature_per_d: weighted(4.0),
+        long_wave_d: weighted(variances, 0.0),
+        slope: weighted(variances, 2.0),
+        curvature_per_d: weighted(variances, 4.0),
+        standing_slope: weighted(standing, 2.0),
+        standing_curvature_per_d: weighted(standing, 4.0),
     }
 }
 

@@ -42,7 +42,7 @@ impl Learned<'_> {
             Form::Coarse | Form::Phases => libm::hypot(errors.lines, errors.edges),
         };
         let (slope, curvature_per_d) = match form {
-            Form::Full | Form::Coarse => (learned.slope, learned.curvature_per_d),
+            Form::Full | Form::Coarse => (learned.standing_slope, learned.standing_curvature_per_d),
             Form::Phases => {
                 let edges = self.edges_per_revolution() as f64;
                 (

@@ -92,6 +92,10 @@ pub struct Residual {
     pub slope: f64,
     /// Their curvature, 1/d rms: times v² it is an error of acceleration.
     pub curvature_per_d: f64,
+    /// Slope of those that stand out of the white error, d/d rms: what is to be stated besides it.
+    pub standing_slope: f64,
+    /// Curvature of the same, 1/d rms.
+    pub standing_curvature_per_d: f64,
 }
 
 /// Noise of edges told apart by the speed of the runs: variance σ_d² + (σ_s·v)².
@@ -147,6 +151,8 @@ impl Report {
                 long_wave_d: 0.0,
                 slope: 0.0,
                 curvature_per_d: 0.0,
+                standing_slope: 0.0,
+                standing_curvature_per_d: 0.0,
             },
             noise: None,
             hysteresis_a_less_b_d: None,

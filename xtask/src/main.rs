@@ -57,7 +57,8 @@ fn done(result: Result<()>) -> Result<ExitCode> {
 
 /// The tables of the tests, then that of the bench.
 fn golden_tables() -> Result<()> {
-    command::cargo(["test", "--package", "leadscrew", "--test", "estimators"])
+    command::cargo(["test", "--package", "leadscrew"])
+        .words(&["--test", "estimators", "--test", "accuracy"])
         .env("INSTA_UPDATE", "always")
         .run()?;
     bench::run(true)

@@ -1,5 +1,6 @@
 //! The subcommands, a file each, and what they share.
 
+pub mod accuracy;
 pub mod calibrate_encoder;
 pub mod demo;
 pub mod replay;

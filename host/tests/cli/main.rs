@@ -1,5 +1,6 @@
 //! The command as a user meets it: the real binary, in a folder of its own.
 
+mod accuracy;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
