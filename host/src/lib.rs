@@ -8,6 +8,7 @@ pub mod error;
 pub mod figures;
 pub mod listening;
 pub mod machine_file;
+pub mod map_file;
 pub mod plot;
 mod progress;
 pub mod recording;

@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
-use leadscrew_host::command::{demo, replay, sim};
+use leadscrew_host::command::{demo, replay, sim, tune_filter};
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         None => demo::run(),
         Some(Command::Sim(args)) => sim::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
+        Some(Command::TuneFilter(args)) => tune_filter::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

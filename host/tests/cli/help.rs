@@ -11,6 +11,7 @@ fn help_names_every_option_its_unit_and_its_default() {
         &[
             "sim",
             "replay",
+            "tune-filter",
             "target/leadscrew of the current directory",
             "Exit codes: 0 done, 1 the job failed, 2 bad usage",
         ],
@@ -54,8 +55,33 @@ fn help_names_every_option_its_unit_and_its_default() {
             "--estimator",
             "--from-s",
             "--to-s",
+            "--window",
+            "--answer",
+            "centre",
+            "--map",
             "--json",
             "--csv",
+            "--plot",
+        ],
+    );
+    let tune = folder.printed("tune-filter --help");
+    assert_says(
+        &tune,
+        &[
+            "[FILE]",
+            "--scene",
+            "table-1",
+            "real-slow",
+            "flywheel",
+            "--lag-weight",
+            "[default: 0.03]",
+            "--sigma-weight",
+            "[default: 0.97]",
+            "has no truth",
+            "101 ticks",
+            "--map",
+            "--from-s",
+            "--json",
             "--plot",
         ],
     );
