@@ -16,5 +16,6 @@ pub mod report;
 pub mod sampler;
 pub mod simulation;
 pub mod statistics;
+pub mod tacho_watch;
 pub mod truth;
 mod whole_file;
