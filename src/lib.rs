@@ -16,6 +16,8 @@
 //! it. [`axis`] puts them together into one pure step; [`params`] makes its configuration from
 //! physical units, by the conversions in [`units`].
 //!
+//! Beside the path, [`tachogenerator`] checks the encoder by a second sensor.
+//!
 //! Outside the tick, [`calibration`] learns where the encoder's edges really lie.
 //!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
@@ -52,6 +54,7 @@ pub mod parameter_table;
 pub mod params;
 pub mod quadrature;
 pub mod setpoint;
+pub mod tachogenerator;
 pub mod telemetry;
 pub mod uncertainty;
 pub mod units;

@@ -6,6 +6,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use leadscrew::estimator::EstimatorConfig;
 
+use crate::command::tune_filter::TuneFilterArgs;
+
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 the job failed, 2 bad usage";
 
 fn estimator_names() -> PossibleValuesParser {
@@ -35,6 +37,8 @@ pub enum Command {
     CalibrateEncoder(CalibrateEncoderArgs),
     /// Writes a capture of the simulated encoder on steady feeds, to try the others on
     SimEncoder(SimEncoderArgs),
+    /// Tries every estimator with many parameters and finds the best trade of lag for noise
+    TuneFilter(TuneFilterArgs),
     /// Measures the estimators on the scenes of reference: the tables of accuracy
     Accuracy(AccuracyArgs),
 }
@@ -138,6 +142,20 @@ pub struct ReplayArgs {
     /// Only this estimator [default: all in the report, exponential in the CSV]
     #[arg(long, value_name = "NAME", value_parser = estimator_names())]
     pub estimator: Option<String>,
+    /// Window of that estimator, ticks: 1 to 64 for simple, 4 to 64 for polynomial [default: 15]
+    #[arg(
+        long,
+        value_name = "W",
+        requires = "estimator",
+        allow_negative_numbers = true
+    )]
+    pub window: Option<u32>,
+    /// Instant that polynomial answers for: its window's centre or the newest sample [default: newest]
+    #[arg(long, value_name = "INSTANT", requires = "estimator", value_parser = ["centre", "newest"])]
+    pub answer: Option<String>,
+    /// The encoder's map; all of it but its phases is tied to the index, which --z names
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
     /// Start of the span over which acceleration is fitted, s [default: after warm-up]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub from_s: Option<f64>,

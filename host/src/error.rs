@@ -18,6 +18,9 @@ pub enum CommandError {
     /// A machine file cannot be used.
     #[error(transparent)]
     MachineFile(#[from] crate::machine_file::MachineFileError),
+    /// An encoder map cannot be used.
+    #[error(transparent)]
+    MapFile(#[from] crate::map_file::MapFileError),
     /// A scenario cannot run.
     #[error(transparent)]
     Scenario(#[from] leadscrew_hal_mock::scenario::ScenarioError),

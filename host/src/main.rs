@@ -5,7 +5,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
-use leadscrew_host::command::{accuracy, calibrate_encoder, demo, replay, sim, sim_encoder};
+use leadscrew_host::command::{
+    accuracy, calibrate_encoder, demo, replay, sim, sim_encoder, tune_filter,
+};
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
@@ -15,6 +17,7 @@ fn main() -> ExitCode {
         Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::TuneFilter(args)) => tune_filter::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

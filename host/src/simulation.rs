@@ -12,6 +12,7 @@ use leadscrew_hal_mock::tachogenerator;
 use crate::listening::Listening;
 use crate::progress::Progress;
 use crate::statistics::Spread;
+use crate::tacho_watch::{TachoWatch, Watched};
 use crate::truth::TruthTrack;
 
 /// What is to be run.
@@ -58,6 +59,8 @@ pub struct Run {
     pub listeners: Vec<Listener>,
     /// What went wrong at the encoder.
     pub health: CaptureHealth,
+    /// What the tachogenerator said of the encoder.
+    pub watched: Watched,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -90,6 +93,8 @@ impl RunSpec {
         let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));
         let mut ticks = Vec::with_capacity(simulation.ticks() as usize);
         let mut truth = TruthTrack::default();
+        let tick_hz = self.scenario.tick_hz;
+        let mut watch = TachoWatch::new(&self.machine, tick_hz, reading_age(tick_hz))?;
         let mut told = None;
         while let Some(outputs) = simulation.step()? {
             let state = simulation.machine.truth();
@@ -99,6 +104,7 @@ impl RunSpec {
             });
             truth.push(state.shaft);
             let tachogenerator = simulation.machine.read_tachogenerator();
+            watch.note(&outputs.estimate, tachogenerator);
             ticks.push(Tick {
                 outputs,
                 carriage: state.carriage.position,
@@ -111,6 +117,7 @@ impl RunSpec {
             truth,
             listeners,
             health: simulation.axis.capture_health(),
+            watched: watch.finish(),
             digest: simulation.digest(),
             tick_hz: self.scenario.tick_hz,
         })

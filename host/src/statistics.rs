@@ -84,6 +84,17 @@ impl FromIterator<f64> for Spread {
     }
 }
 
+/// Mean of some values; `None` of nothing.
+#[must_use]
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0_u64);
+    for value in values {
+        sum += value;
+        count += 1;
+    }
+    (count > 0).then(|| sum / count as f64)
+}
+
 /// Least-squares slope of y over x; `None` for fewer than two different x.
 #[must_use]
 pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
@@ -103,7 +114,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spread_and_slope_of_known_values() {
+    fn spread_mean_and_slope_of_known_values() {
+        assert_eq!(mean([1.0, 2.0, 6.0].into_iter()), Some(3.0));
+        assert_eq!(mean(std::iter::empty()), None);
         let spread: Spread = [3.0, -4.0, f64::NAN].into_iter().collect();
         assert_eq!(
             (spread.rms(), spread.peak(), spread.count()),

@@ -2,10 +2,13 @@
 
 pub mod accuracy;
 pub mod calibrate_encoder;
+mod choice;
 pub mod demo;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;
+mod span;
+pub mod tune_filter;
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -36,6 +39,15 @@ fn estimator(name: &str) -> Result<EstimatorConfig, CommandError> {
 fn tick_rate(tick_hz: f64) -> Result<f64, CommandError> {
     checked("--tick-hz", tick_hz, TICK_HZ.0, TICK_HZ.1)
         .map_err(|error| CommandError::Usage(format!("{error} Hz")))
+}
+
+/// The error of a recording that is too long to be kept.
+fn too_long(file: &Path, ticks: u64, tick_hz: f64) -> CommandError {
+    CommandError::Data(format!(
+        "{}: lasts for {ticks} ticks at {tick_hz} Hz, more than the {MAX_TICKS} that are kept in memory: \
+         lower --tick-hz or export a shorter range",
+        file.display()
+    ))
 }
 
 /// Refuses, before any work is done, output files that would destroy something.

@@ -13,6 +13,7 @@ fn help_names_every_option_its_unit_and_its_default() {
             "replay",
             "calibrate-encoder",
             "sim-encoder",
+            "tune-filter",
             "target/leadscrew of the current directory",
             "Exit codes: 0 done, 1 the job failed, 2 bad usage",
         ],
@@ -56,6 +57,10 @@ fn help_names_every_option_its_unit_and_its_default() {
             "--estimator",
             "--from-s",
             "--to-s",
+            "--window",
+            "--answer",
+            "centre",
+            "--map",
             "--json",
             "--csv",
             "--plot",
@@ -86,6 +91,27 @@ fn help_names_every_option_its_unit_and_its_default() {
             "--revolutions",
             "--seed",
             "--steady",
+        ],
+    );
+    let tune = folder.printed("tune-filter --help");
+    assert_says(
+        &tune,
+        &[
+            "[FILE]",
+            "--scene",
+            "table-1",
+            "real-slow",
+            "flywheel",
+            "--lag-weight",
+            "[default: 0.03]",
+            "--sigma-weight",
+            "[default: 0.97]",
+            "has no truth",
+            "101 ticks",
+            "--map",
+            "--from-s",
+            "--json",
+            "--plot",
         ],
     );
 }

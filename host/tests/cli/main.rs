@@ -10,13 +10,16 @@ mod machine_files;
 mod outputs;
 mod pictures;
 mod replay;
+mod replay_estimator;
 mod replay_faults;
+mod replay_map;
 mod replay_options;
 mod scenes;
 mod sigrok;
 mod sim;
 mod sim_usage;
 mod table;
+mod tune_filter;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

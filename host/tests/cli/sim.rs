@@ -49,6 +49,7 @@ fn json_has_its_keys_and_stands_alone() {
             "move_mm",
             "schema",
             "seed",
+            "tachogenerator",
             "tick_hz",
             "ticks",
             "units"
@@ -76,6 +77,64 @@ fn json_has_its_keys_and_stands_alone() {
     }
     let digest = report["digest"].as_str().expect("text");
     assert!(digest.len() == 16 && digest.chars().all(|digit| digit.is_ascii_hexdigit()));
+}
+
+#[test]
+fn the_tachogenerator_vouches_for_the_encoder() {
+    let report = Folder::new().json("sim");
+    let watched = &report["tachogenerator"];
+    assert_eq!(
+        keys(watched),
+        [
+            "disagreed_at_tick",
+            "disagreement",
+            "disagreements",
+            "gain",
+            "is_learned",
+            "offset",
+            "residual_rms"
+        ]
+    );
+    assert!(watched["disagreement"].is_null() && watched["disagreed_at_tick"].is_null());
+    assert_eq!(
+        (&watched["disagreements"], &watched["is_learned"]),
+        (&0.into(), &true.into())
+    );
+    assert!((number(watched, "/gain") - 1.0).abs() < 0.005);
+    let residual = number(watched, "/residual_rms");
+    assert!(residual > 0.01 && residual < 0.5, "{residual}");
+    let printed = Folder::new().printed(SHORT);
+    assert_says(
+        &printed,
+        &[
+            "tachogenerator over encoder: gain ",
+            "moved too little to know them",
+        ],
+    );
+}
+
+#[test]
+fn a_coupling_that_slips_or_breaks_is_told() {
+    let folder = Folder::new();
+    for (slip, kind, words) in [
+        ("1.0", "broken", "the encoder stands"),
+        ("0.1", "slipping", "turns less than the motor"),
+    ] {
+        folder.write(
+            "loose.toml",
+            format!("[mount]\ncoupling_slip = {slip}\nslip_from_s = 1.8\n"),
+        );
+        let watched = folder.json("sim --machine loose.toml")["tachogenerator"].clone();
+        let tick = number(&watched, "/disagreed_at_tick");
+        assert!((1800.0..1830.0).contains(&tick), "{slip}: {tick}");
+        let printed = folder.printed("sim --machine loose.toml");
+        let warning = format!("warning: encoder and tachogenerator disagree from tick {tick} on");
+        assert_says(&printed, &[&warning]);
+        if kind == "slipping" {
+            assert_eq!(watched["disagreement"], kind);
+            assert_says(&printed, &[words]);
+        }
+    }
 }
 
 #[test]

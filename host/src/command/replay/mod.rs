@@ -1,8 +1,8 @@
 //! `leadscrew replay`: the core on a capture of a real encoder.
 
+mod map;
 mod report;
 
-use std::fmt;
 use std::path::Path;
 
 use leadscrew::capture::CaptureHealth;
@@ -11,19 +11,23 @@ use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
+use super::choice::chosen;
+use super::span::Span;
 use super::{
-    MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
+    MAX_TICKS, check_outputs, file_name, print, print_json, tick_rate, too_long, write_file,
 };
 use crate::cli::ReplayArgs;
 use crate::error::CommandError;
 use crate::figures::{self, acceleration_points, estimator_series, panel, velocity_points};
 use crate::listening::Listening;
+use crate::map_file::MapFile;
 use crate::plot::Figure;
 use crate::progress::Progress;
 use crate::recording::{self, ChannelSelection, Recording};
 use crate::report::CsvReport;
 use crate::sampler::{Sampler, Totals};
 use crate::simulation::all_estimators;
+use map::{MapFigures, TieLog};
 use report::Report;
 
 /// The estimator of the CSV where none is asked for.
@@ -36,21 +40,23 @@ const DEFAULT_ESTIMATOR: &str = "exponential";
 pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
     let tick_hz = tick_rate(args.tick_hz)?;
     let configs = match &args.estimator {
-        Some(name) => vec![estimator(name)?],
+        Some(name) => vec![chosen(name, args.window, args.answer.as_deref())?],
         None => all_estimators(),
     };
-    let span = Span::new(args)?;
+    let span = Span::new(args.from_s, args.to_s)?;
     let channels = ChannelSelection {
         a: args.a.clone(),
         b: args.b.clone(),
         z: args.z.clone(),
     };
     check_outputs(&args.output, Some(&args.file))?;
+    check_outputs(&args.output, args.map.as_deref())?;
+    let map = args.map.as_deref().map(MapFile::read).transpose()?;
     let recording = {
         let _reading = Progress::endless("reading");
         recording::read(&args.file, &channels, args.samplerate)?
     };
-    let replay = Replay::of(&args.file, &recording, tick_hz, &configs)?;
+    let replay = Replay::of(&args.file, &recording, tick_hz, &configs, map.as_ref())?;
 
     if let Some(path) = &args.output.csv {
         replay.write_csv(path)?;
@@ -59,7 +65,11 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
         let _drawing = Progress::endless("drawing");
         replay.figure(&args.file).save(path)?;
     }
-    let report = Report::new(&replay, &span);
+    let map = map.as_ref().zip(replay.tie);
+    let map = map
+        .map(|(file, tie)| MapFigures::new(file, tie, args.z.is_some()))
+        .transpose()?;
+    let report = Report::new(&replay, &span, map);
     if args.output.json {
         print_json(&report)
     } else {
@@ -77,15 +87,8 @@ struct Replay {
     health: CaptureHealth,
     counts: Vec<i64>,
     tracks: Vec<Track>,
-}
-
-/// The error of a recording that is too long to be kept.
-fn too_long(file: &Path, ticks: u64, tick_hz: f64) -> CommandError {
-    CommandError::Data(format!(
-        "{}: lasts for {ticks} ticks at {tick_hz} Hz, more than the {MAX_TICKS} that are kept in memory: \
-         lower --tick-hz or export a shorter range",
-        file.display()
-    ))
+    /// `None` without a map.
+    tie: Option<TieLog>,
 }
 
 /// The estimates of one estimator.
@@ -100,6 +103,7 @@ impl Replay {
         recording: &Recording,
         tick_hz: f64,
         configs: &[EstimatorConfig],
+        map: Option<&MapFile>,
     ) -> Result<Self, CommandError> {
         let mut sampler = Sampler::new(recording, tick_hz);
         let ticks = sampler.ticks();
@@ -110,6 +114,11 @@ impl Replay {
             .map_err(|error| CommandError::Usage(error.to_string()))?;
         let mut progress = Progress::new("replaying", ticks);
         let mut listening = Listening::new(configs, scale);
+        let mut tie = None;
+        if let Some(map) = map {
+            listening = listening.with_map(map.map()?);
+            tie = Some(TieLog::default());
+        }
         let track = |&config: &EstimatorConfig| Track {
             config,
             estimates: Vec::new(),
@@ -126,6 +135,9 @@ impl Replay {
                     ..estimate
                 });
             });
+            if let (Some(tie), Some(state)) = (&mut tie, listening.map_state()) {
+                tie.note(counts.len(), state, listening.map_health());
+            }
             counts.push(count - start);
             progress.step();
         }
@@ -135,6 +147,7 @@ impl Replay {
             health: listening.health(),
             counts,
             tracks,
+            tie,
         })
     }
 
@@ -171,47 +184,5 @@ impl Replay {
                 panel(figures::ACCELERATION, curves(acceleration_points)),
             ],
         )
-    }
-}
-
-/// The span of time over which acceleration is fitted, of what lies after warm-up.
-struct Span {
-    from_s: f64,
-    to_s: f64,
-}
-
-impl Span {
-    fn new(args: &ReplayArgs) -> Result<Self, CommandError> {
-        let (from, to) = (
-            args.from_s.unwrap_or(0.0),
-            args.to_s.unwrap_or(f64::INFINITY),
-        );
-        if from >= 0.0 && from < to {
-            Ok(Self {
-                from_s: from,
-                to_s: to,
-            })
-        } else {
-            Err(CommandError::Usage(format!(
-                "--from-s {from} --to-s {to}: the span must begin at 0 or later and end after its beginning"
-            )))
-        }
-    }
-
-    fn contains(&self, tick: usize, tick_hz: f64) -> bool {
-        (self.from_s..=self.to_s).contains(&(tick as f64 / tick_hz))
-    }
-}
-
-impl fmt::Display for Span {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("after warm-up")?;
-        if self.from_s > 0.0 {
-            write!(f, ", from {} s", self.from_s)?;
-        }
-        if self.to_s.is_finite() {
-            write!(f, ", to {} s", self.to_s)?;
-        }
-        Ok(())
     }
 }

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::map::MapFigures;
 use super::{Replay, Span, Track};
 use crate::report::{LagFigures, figure_or_dash, overrun_warning, overspeed_warning, text_table};
-use crate::statistics::{Spread, slope};
+use crate::statistics::{Spread, mean, slope};
 
 /// The report of a replay.
 #[derive(Serialize)]
@@ -26,6 +27,8 @@ pub(super) struct Report {
     overrun_ticks: u32,
     /// Ticks in which the edge times do not explain the count.
     ambiguous_ticks: u32,
+    /// The encoder map; null without one.
+    map: Option<MapFigures>,
     #[serde(skip)]
     span: String,
 }
@@ -36,6 +39,7 @@ struct Units {
     velocity_peak: &'static str,
     acceleration_rms: &'static str,
     acceleration_fit: &'static str,
+    acceleration_mean: &'static str,
     lag: &'static str,
 }
 
@@ -46,8 +50,17 @@ struct Figures {
     acceleration_rms: Option<f64>,
     /// Least-squares slope of the velocity; null for fewer than two ticks.
     acceleration_fit: Option<f64>,
+    /// Mean of the estimated acceleration over the same span; null without a tick in it.
+    acceleration_mean: Option<f64>,
+    /// The model of motion that it ran; null for those without one.
+    model: Option<&'static str>,
     #[serde(flatten)]
     lags: LagFigures,
+}
+
+/// The model of motion that an estimator of this name runs where no command of the drive is known.
+const fn model_without_command(_estimator: &str) -> Option<&'static str> {
+    None
 }
 
 impl Figures {
@@ -60,14 +73,18 @@ impl Figures {
         let acceleration: Spread = settled()
             .map(|(_, estimate)| estimate.acceleration.to_num())
             .collect();
-        let points: Vec<_> = settled()
-            .filter(|(tick, _)| span.contains(*tick, tick_hz))
+        let in_span = || settled().filter(|(tick, _)| span.contains(*tick, tick_hz));
+        let points: Vec<_> = in_span()
             .map(|(tick, estimate)| (tick as f64, estimate.velocity.to_num()))
             .collect();
         Self {
             velocity_peak: velocity.peak_of_some(),
             acceleration_rms: acceleration.rms_of_some(),
             acceleration_fit: slope(&points),
+            acceleration_mean: mean(
+                in_span().map(|(_, estimate)| estimate.acceleration.to_num::<f64>()),
+            ),
+            model: model_without_command(track.config.name()),
             lags: (&track.config).into(),
         }
     }
@@ -75,7 +92,7 @@ impl Figures {
 
 impl Report {
     /// The report of `replay`, with acceleration fitted over `span`.
-    pub(super) fn new(replay: &Replay, span: &Span) -> Self {
+    pub(super) fn new(replay: &Replay, span: &Span, map: Option<MapFigures>) -> Self {
         let figures = |track: &Track| {
             (
                 track.config.name(),
@@ -94,12 +111,14 @@ impl Report {
                 velocity_peak: "d/tick",
                 acceleration_rms: "d/tick²",
                 acceleration_fit: "d/tick²",
+                acceleration_mean: "d/tick²",
                 lag: "tick",
             },
             estimators: replay.tracks.iter().map(figures).collect(),
             overspeed_ticks: replay.health.overspeed_ticks,
             overrun_ticks: replay.health.overrun_ticks,
             ambiguous_ticks: replay.health.ambiguous_ticks,
+            map,
             span: span.to_string(),
         }
     }
@@ -111,6 +130,7 @@ impl Report {
             "velocity\npeak\nd/tick",
             "acceleration\nrms\nd/tick²",
             "acceleration\nfit\nd/tick²",
+            "acceleration\nmean\nd/tick²",
             "lag x/v/a\n\nticks",
         ]);
         for (name, figures) in &self.estimators {
@@ -119,12 +139,13 @@ impl Report {
                 figure_or_dash(figures.velocity_peak, 3),
                 figure_or_dash(figures.acceleration_rms, 4),
                 figure_or_dash(figures.acceleration_fit, 6),
+                figure_or_dash(figures.acceleration_mean, 6),
                 figures.lags.to_string(),
             ]);
         }
         format!(
             "{}: {} edges, {} illegal, final count {} d, {} ticks at {} Hz\n\
-             {}acceleration fit: slope of the velocity {}\n\n\
+             {}{}{}acceleration fit, mean: slope of the velocity, mean of the acceleration {}\n\n\
              {}\n",
             file.display(),
             self.edges,
@@ -133,9 +154,23 @@ impl Report {
             self.ticks,
             self.tick_hz,
             self.warnings(),
+            self.map
+                .as_ref()
+                .map(ToString::to_string)
+                .unwrap_or_default(),
+            self.models(),
             self.span,
             table.trim_fmt(),
         )
+    }
+
+    /// Which estimators ran a model of motion, a line each.
+    fn models(&self) -> String {
+        let line = |(name, figures): (&&str, &Figures)| {
+            let model = figures.model?;
+            Some(format!("{name}: ran its {model} model\n"))
+        };
+        self.estimators.iter().filter_map(line).collect()
     }
 
     /// What makes the figures doubtful, a line each.

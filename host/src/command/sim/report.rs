@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::report::{CaptureFigures, LagFigures, figure_or_dash, text_table};
 use crate::simulation::{Accuracy, Listener, Run, RunSpec};
 use crate::statistics::Spread;
+use crate::tacho_watch::{Watched, describe};
 
 /// The report of a run.
 #[derive(Serialize)]
@@ -25,6 +26,57 @@ pub(super) struct Report {
     following_error: FollowingError,
     estimators: BTreeMap<&'static str, EstimatorFigures>,
     capture: CaptureFigures,
+    tachogenerator: TachogeneratorFigures,
+    /// Of the tachogenerator; empty if there is none.
+    #[serde(skip)]
+    warning: String,
+}
+
+/// What the tachogenerator said of the encoder, by the estimator in the loop.
+#[derive(Serialize)]
+struct TachogeneratorFigures {
+    /// Fitted: tachogenerator over encoder.
+    gain: f64,
+    /// Fitted, d/tick.
+    offset: f64,
+    /// False if the axis has not moved for long enough to know the gain.
+    is_learned: bool,
+    /// Rms over the run, d/tick.
+    residual_rms: f64,
+    /// At the end; null if the two agree.
+    disagreement: Option<&'static str>,
+    /// First tick of a disagreement; null without one.
+    disagreed_at_tick: Option<u32>,
+    /// Times that one began.
+    disagreements: u32,
+}
+
+impl From<&Watched> for TachogeneratorFigures {
+    fn from(watched: &Watched) -> Self {
+        Self {
+            gain: watched.gain,
+            offset: watched.offset,
+            is_learned: watched.is_learned,
+            residual_rms: watched.residual.rms(),
+            disagreement: watched.disagreement.map(|found| describe(found).0),
+            disagreed_at_tick: watched.first_tick,
+            disagreements: watched.disagreements,
+        }
+    }
+}
+
+impl TachogeneratorFigures {
+    fn text(&self) -> String {
+        let learned = if self.is_learned {
+            ""
+        } else {
+            " (moved too little to know them)"
+        };
+        format!(
+            "tachogenerator over encoder: gain {:.4}, offset {:.3} d/tick{learned}, residual rms {:.3} d/tick\n",
+            self.gain, self.offset, self.residual_rms
+        )
+    }
 }
 
 #[derive(Serialize)]
@@ -100,6 +152,8 @@ impl Report {
             },
             estimators: run.listeners.iter().map(figures).collect(),
             capture: run.health.into(),
+            tachogenerator: (&run.watched).into(),
+            warning: run.watched.warning(),
         }
     }
 
@@ -125,7 +179,7 @@ impl Report {
             "{}: {} mm at {} mm/min and back, {} Hz, {} in the loop, seed {}\n\
              {} ticks, digest {}\n\
              following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n\
-             rms v, rms a: rms errors over the move, ramps included, seed {}\n{}\n\
+             {}rms v, rms a: rms errors over the move, ramps included, seed {}\n{}{}\n\
              {}\n",
             self.machine,
             self.move_mm,
@@ -138,8 +192,10 @@ impl Report {
             self.following_error.peak,
             self.following_error.rms,
             self.following_error.at_end,
+            self.tachogenerator.text(),
             self.seed,
             self.capture.warnings(),
+            self.warning,
             table.trim_fmt(),
         )
     }
