@@ -166,9 +166,12 @@ impl<'m> MapCheck<'m> {
     #[must_use]
     pub fn fit(&self) -> MapFit {
         let scale = SECOND_DIFFERENCE_GAIN * f64::from(self.triples.max(1));
-        let [without_d, map_d, with_d] = self
-            .squares
-            .map(|sum| libm::ldexp(libm::sqrt(sum as f64 / scale), -(ERROR_FRAC as i32)));
+        let [without_d, map_d, with_d] = self.squares.map(|sum| {
+            libm::ldexp(
+                libm::sqrt(sum as f64 / scale),
+                (ERROR_FRAC as i32).wrapping_neg(),
+            )
+        });
         MapFit {
             triples: self.triples,
             without_d,
