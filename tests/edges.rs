@@ -106,8 +106,7 @@ fn counters_may_wrap_and_edges_share_a_clock() {
         edges: [&times, &[]],
         ..Capture::default()
     };
-    let (place, age, _) =
-        place_and_age(after(u32::MAX - 1, 10 - CLOCKS as u32 % 7, &capture).unwrap());
+    let (place, age, _) = place_and_age(after(u32::MAX - 1, 10 - CLOCKS % 7, &capture).unwrap());
     // Boundaries −1, 0 and 1: ages 21, 21 and 5 clocks.
     assert_eq!(place, 0.0);
     assert!((age * f64::from(CLOCKS) - 47.0 / 3.0).abs() < 1e-3, "{age}");

@@ -4,7 +4,7 @@ mod two_edge;
 
 use std::sync::LazyLock;
 
-use leadscrew_host::accuracy::{COLUMNS, Figures, ROWS, Variant, figures};
+use leadscrew_host::accuracy::{COLUMNS, Figures, LoopRow, ROWS, Variant, figures};
 
 /// Learned and measured once for all tests.
 static FIGURES: LazyLock<Figures> = LazyLock::new(|| figures().unwrap());
@@ -52,6 +52,17 @@ fn the_stated_uncertainty_is_honest() {
         }
     }
     assert_eq!(judged, 30);
+}
+
+#[test]
+fn the_observer_in_the_loop_reaches_its_figures() {
+    let judged = FIGURES.in_loop.iter().filter_map(LoopRow::reached);
+    assert_eq!(judged.clone().count(), 6);
+    assert!(
+        judged.clone().all(|reached| reached),
+        "{:#?}",
+        FIGURES.in_loop
+    );
 }
 
 #[test]

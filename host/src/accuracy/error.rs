@@ -3,6 +3,7 @@
 use leadscrew::encoder_map::error::MapError;
 use leadscrew::encoder_map::tie::MapState;
 use leadscrew::units::RangeError;
+use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::calibration::CalibrationError;
@@ -19,6 +20,9 @@ pub enum AccuracyError {
     /// A learned map is no map.
     #[error("the learned map cannot be used: {0}")]
     Map(#[from] MapError),
+    /// A move cannot be made.
+    #[error(transparent)]
+    Loop(#[from] ScenarioError),
     /// The index was not found in time.
     #[error(
         "row {row}, encoder {seed}: the map is {state:?} to the index when the figures begin; expected Tied"

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::bound::BoundFigure;
 use super::columns::{COLUMNS, Column, Quantity};
+use super::in_loop::LoopRow;
 use super::methods::{COUNTING, FITS, GAUSSIAN, fit_of};
 use super::parts::Parts;
 use super::rows::Row;
@@ -79,6 +80,8 @@ pub struct Figures {
     pub stated: Vec<Stated>,
     /// The bound on its own scene.
     pub bound: Vec<BoundFigure>,
+    /// The observer in the loop.
+    pub in_loop: Vec<LoopRow>,
 }
 
 impl Tallies {

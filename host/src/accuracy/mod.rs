@@ -8,14 +8,15 @@
 //! ```
 //!
 //! σ is the root of the mean square of estimate less truth at the instant that the estimate is for, bias included,
-//! of the worst of five encoders in both directions. A further table, as of a closed loop, is a field of [`Figures`], made
-//! in [`figures`] and a section of [`Figures::to_text`].
+//! of the worst of five encoders in both directions. A further table is a field of [`Figures`], made in [`figures`]
+//! and a section of [`Figures::to_text`].
 
 mod anatomy;
 mod bound;
 mod columns;
 mod error;
 mod figures;
+mod in_loop;
 mod maps;
 mod methods;
 mod parallel;
@@ -34,6 +35,7 @@ pub use self::bound::BoundFigure;
 pub use self::columns::{COLUMNS, Column, Quantity};
 pub use self::error::AccuracyError;
 pub use self::figures::{Cell, Figures, RowFigures, Stated, VariantFigures};
+pub use self::in_loop::LoopRow;
 pub use self::parts::Parts;
 pub use self::rows::{ROWS, Row};
 pub use self::table::figures;

@@ -8,6 +8,7 @@ use super::bound::bound;
 use super::columns::COLUMNS;
 use super::error::AccuracyError;
 use super::figures::{Figures, RowFigures, Stated, VariantFigures};
+use super::in_loop::in_loop;
 use super::maps::{self, Known};
 use super::methods::{estimators, fit_of};
 use super::rows::{ROWS, Row};
@@ -63,6 +64,7 @@ pub fn figures() -> Result<Figures, AccuracyError> {
         variants,
         stated,
         bound: bound()?,
+        in_loop: in_loop(&known[..SEEDS.len()])?,
     })
 }
 
