@@ -421,8 +421,10 @@ impl Estimator {
         let gained = rounded::<{ 24 + TIME_FRAC - 20 }>(found.acceleration, behind);
         let extrapolated = found.velocity.saturating_add(gained);
         let newest = self.within_silence(extrapolated);
+        // The next sample is bridged to its step by how the shaft went, and it may have turned round.
+        let most = self.most_in_silence().unwrap_or(i32::MAX);
         self.motion = Motion {
-            newest,
+            newest: extrapolated.clamp(most.wrapping_neg(), most),
             acceleration: found.acceleration,
         };
         let lag = Lag::from_bits(behind.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS));
