@@ -97,7 +97,7 @@ fn survives(window: u32, captures: &[Wild]) -> Result<(), TestCaseError> {
         now = now.wrapping_add(CLOCKS);
         let times: Vec<u32> = (0..30)
             .rev()
-            .map(|edge| now - edge * (CLOCKS / 30))
+            .map(|edge| now.wrapping_sub(edge * (CLOCKS / 30)))
             .collect();
         let estimate = bench.update(&Capture {
             count,

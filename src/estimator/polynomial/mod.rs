@@ -419,9 +419,12 @@ impl Estimator {
     ) -> Estimate {
         let behind = found.behind;
         let gained = rounded::<{ 24 + TIME_FRAC - 20 }>(found.acceleration, behind);
-        let newest = self.within_silence(found.velocity.saturating_add(gained));
+        let extrapolated = found.velocity.saturating_add(gained);
+        let newest = self.within_silence(extrapolated);
+        // The next sample is bridged to its step by how the shaft went, and it may have turned round.
+        let most = self.most_in_silence().unwrap_or(i32::MAX);
         self.motion = Motion {
-            newest,
+            newest: extrapolated.clamp(most.wrapping_neg(), most),
             acceleration: found.acceleration,
         };
         let lag = Lag::from_bits(behind.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS));
@@ -433,8 +436,9 @@ impl Estimator {
             Answer::Centre => (found.velocity, lag, lag, found.velocity_gain),
             Answer::Newest => {
                 place = place.wrapping_add(trapezium(found.velocity, newest, behind));
-                // A line has no other velocity than that of its middle.
-                let lag_v = if found.is_curved { Lag::ZERO } else { lag };
+                // A line has no other velocity than that of its middle; what the silence allows is of now.
+                let is_newest = found.is_curved || newest != extrapolated;
+                let lag_v = if is_newest { Lag::ZERO } else { lag };
                 (newest, Lag::ZERO, lag_v, found.newest_gain())
             }
         };
@@ -461,20 +465,21 @@ impl Estimator {
         of_acceleration: u32,
         noise: &EdgeNoise,
     ) -> Variances {
-        // Fewer bits, so that weights of 256 fit.
+        // 24 significant bits, so that weights of 256 fit and many edges leave some.
         const SPARE_BITS: u32 = 8;
         let velocity = self.motion.newest;
-        let of_sample = noise
-            .of_edge(velocity)
+        let of_edge = noise.of_edge(velocity);
+        let lead = of_edge.leading_zeros() & 31;
+        let of_sample = of_edge
+            .wrapping_shl(lead)
             .wrapping_shr(SPARE_BITS)
             .wrapping_mul(weight)
             .checked_div(self.window.edges())
             .unwrap_or(0);
+        let frac = const { PLACE_FRAC + GAIN_FRAC - SPARE_BITS - Variance::FRAC_NBITS };
         let of_samples = |gain: u32| {
             let product = u64::from(of_sample).wrapping_mul(u64::from(gain));
-            Variance::from_bits(
-                product.wrapping_shr(PLACE_FRAC + GAIN_FRAC - SPARE_BITS - Variance::FRAC_NBITS),
-            )
+            Variance::from_bits(product.wrapping_shr(frac.wrapping_add(lead)))
         };
         Variances {
             velocity: of_samples(of_velocity).wrapping_add(noise.of_velocity(velocity)),
