@@ -64,7 +64,13 @@ fn no_alarm(scenario: &MoveAndBack, estimator: &str, seed: u64) -> Watched {
 #[test]
 fn the_standard_move_raises_no_alarm_and_finds_the_gain() {
     for estimator in EstimatorConfig::NAMES {
-        for (tick_hz, seed) in [(1000.0, 1), (1000.0, 2), (2500.0, 1)] {
+        for (tick_hz, seed) in [
+            (1000.0, 1),
+            (1000.0, 2),
+            (1000.0, 3),
+            (2500.0, 1),
+            (2500.0, 2),
+        ] {
             let watched = no_alarm(&MoveAndBack::standard(tick_hz), estimator, seed);
             assert!(watched.check.is_learned());
             let gain: f64 = watched.check.gain().to_num();

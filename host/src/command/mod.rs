@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;
+mod map_figures;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;

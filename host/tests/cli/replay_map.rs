@@ -200,3 +200,24 @@ fn maps_that_cannot_be_used_are_refused() {
     let message = folder.refused(2, "replay feed.vcd --map full.map --csv full.map");
     assert_says(&message, &["full.map", "is the file that is read"]);
 }
+
+#[test]
+fn filters_are_tuned_with_the_map_too() {
+    let folder = folder();
+    let best = |arguments: &str| {
+        let report = folder.json(&format!("tune-filter feed.vcd {arguments}"));
+        let sweep = report["sweep"].as_array().expect("entries");
+        let entry = sweep
+            .iter()
+            .find(|entry| entry["estimator"] == "polynomial" && entry["value"] == 15.0);
+        (
+            number(entry.expect("an entry"), "/sigma_a"),
+            report["map"]["state"].clone(),
+        )
+    };
+    let ((without, none), (with, tied)) = (best(""), best("--map full.map --z Z"));
+    assert!(none.is_null() && tied == "tied");
+    assert!(with < 0.2 * without, "{with} of {without}");
+    let printed = folder.printed("tune-filter feed.vcd --map full.map");
+    assert_says(&printed, &["never tied", "warning: without", "--z"]);
+}

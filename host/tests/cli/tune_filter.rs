@@ -66,6 +66,7 @@ fn figures_belong_together() {
         keys(&report),
         [
             "best",
+            "map",
             "optima",
             "reference",
             "schema",

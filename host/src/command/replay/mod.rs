@@ -1,6 +1,5 @@
 //! `leadscrew replay`: the core on a capture of a real encoder.
 
-mod map;
 mod report;
 
 use std::path::Path;
@@ -12,6 +11,7 @@ use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
 use super::choice::chosen;
+use super::map_figures::{MapFigures, TieLog};
 use super::span::Span;
 use super::{
     MAX_TICKS, check_outputs, file_name, print, print_json, tick_rate, too_long, write_file,
@@ -27,7 +27,6 @@ use crate::recording::{self, ChannelSelection, Recording};
 use crate::report::CsvReport;
 use crate::sampler::{Sampler, Totals};
 use crate::simulation::all_estimators;
-use map::{MapFigures, TieLog};
 use report::Report;
 
 /// The estimator of the CSV where none is asked for.
@@ -135,8 +134,8 @@ impl Replay {
                     ..estimate
                 });
             });
-            if let (Some(tie), Some(state)) = (&mut tie, listening.map_state()) {
-                tie.note(counts.len(), state, listening.map_health());
+            if let Some(tie) = &mut tie {
+                tie.note(counts.len(), &listening);
             }
             counts.push(count - start);
             progress.step();

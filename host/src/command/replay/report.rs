@@ -5,8 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::map::MapFigures;
-use super::{Replay, Span, Track};
+use super::{MapFigures, Replay, Span, Track};
 use crate::report::{LagFigures, figure_or_dash, overrun_warning, overspeed_warning, text_table};
 use crate::statistics::{Spread, mean, slope};
 

@@ -9,6 +9,7 @@ use super::TuneFilterArgs;
 use super::judge::{Judge, warm_up};
 use super::sweep::Candidate;
 use super::trend::{HALF, MAX_MISFIT_D, Trend};
+use crate::command::map_figures::{MapFigures, TieLog};
 use crate::command::span::Span;
 use crate::command::{MAX_TICKS, too_long};
 use crate::error::CommandError;
@@ -18,7 +19,7 @@ use crate::progress::Progress;
 use crate::recording::{self, ChannelSelection, Recording};
 use crate::sampler::Sampler;
 
-/// Differences of all candidates from the trend of the capture in `file`.
+/// Differences of all candidates from the trend of the capture in `file`, and what became of the map.
 ///
 /// # Errors
 /// Bad usage, files that cannot be read, or a capture without steady motion.
@@ -27,7 +28,7 @@ pub(super) fn judge(
     args: &TuneFilterArgs,
     candidates: &[Candidate],
     tick_hz: f64,
-) -> Result<Vec<Judge>, CommandError> {
+) -> Result<(Vec<Judge>, Option<MapFigures>), CommandError> {
     let span = Span::new(args.from_s, args.to_s)?;
     let map = args.map.as_deref().map(MapFile::read).transpose()?;
     let channels = ChannelSelection {
@@ -55,6 +56,7 @@ pub(super) fn judge(
     let longest = longest_lag(candidates);
     let first = warm_up(candidates) as usize;
     let mut progress = Progress::new("tuning", sampler.ticks());
+    let mut tie = TieLog::default();
     let (mut tick, mut steady) = (0, 0);
     while let Some(capture) = sampler.next_capture() {
         // All are judged on the same ticks: those with a trend at the instants of the youngest and the oldest, and
@@ -67,13 +69,18 @@ pub(super) fn judge(
                 judges[index].push(&estimate, |lag| trend.before(tick, lag));
             }
         });
+        tie.note(tick, &listening);
         tick += 1;
         progress.step();
     }
     if judges.iter().any(|judge| judge.ticks() == 0) {
         return Err(nothing_steady(file, trend.steady_ticks(), first));
     }
-    Ok(judges)
+    let map = map
+        .as_ref()
+        .map(|map| MapFigures::new(map, tie, args.z.is_some()))
+        .transpose()?;
+    Ok((judges, map))
 }
 
 /// Longest lag of the acceleration, ticks, rounded up.

@@ -17,6 +17,7 @@ use super::{check_outputs, print, print_json, tick_rate};
 use crate::cli::OutputArgs;
 use crate::error::CommandError;
 use crate::progress::Progress;
+use judge::Judge;
 use report::{Report, Weights};
 
 /// Largest weight.
@@ -37,16 +38,16 @@ pub fn run(args: &TuneFilterArgs) -> Result<(), CommandError> {
     check_outputs(&outputs, args.file.as_deref())?;
     check_outputs(&outputs, args.map.as_deref())?;
     let candidates = sweep::candidates().map_err(|error| CommandError::Data(error.to_string()))?;
-    let (source, judges) = match (args.scene, &args.file) {
+    let (source, reference, judges, map) = match (args.scene, &args.file) {
         (Some(scene), _) => {
             let judges = scene.judge(&candidates, tick_hz, args.seed);
             let judges = judges.map_err(|error| CommandError::Usage(error.to_string()))?;
-            (scene.description().to_owned(), judges)
+            (scene.description().to_owned(), "truth", judges, None)
         }
-        (None, Some(file)) => (
-            file.display().to_string(),
-            captured::judge(file, args, &candidates, tick_hz)?,
-        ),
+        (None, Some(file)) => {
+            let (judges, map) = captured::judge(file, args, &candidates, tick_hz)?;
+            (file.display().to_string(), "trend", judges, map)
+        }
         (None, None) => {
             return Err(CommandError::Usage(
                 "tune-filter has nothing to tune on: name a capture, or a scene by --scene"
@@ -54,8 +55,11 @@ pub fn run(args: &TuneFilterArgs) -> Result<(), CommandError> {
             ));
         }
     };
-    let is_simulated = args.scene.is_some();
-    let report = Report::new(source, is_simulated, tick_hz, weights, &candidates, &judges);
+    let entries = report::entries(&candidates, &judges, tick_hz, weights);
+    let mut report = Report::new(source, tick_hz, weights, entries);
+    report.reference = reference;
+    report.ticks = judges.first().map_or(0, Judge::ticks);
+    report.map = map;
     if let Some(path) = &args.plot {
         let _drawing = Progress::endless("drawing");
         report.figure().save(path)?;

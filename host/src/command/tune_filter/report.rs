@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::judge::Judge;
 use super::sweep::Candidate;
+use crate::command::map_figures::MapFigures;
 use crate::figures::estimator_series;
 use crate::plot::{Colour, Figure, Panel, Series};
 use crate::report::text_table;
@@ -28,10 +29,12 @@ pub(super) struct Report {
     schema: &'static str,
     source: String,
     /// What the error is measured against: `truth` or `trend`.
-    reference: &'static str,
+    pub(super) reference: &'static str,
     tick_hz: f64,
     /// Ticks that all were judged on.
-    ticks: u64,
+    pub(super) ticks: u64,
+    /// The encoder map; null without one.
+    pub(super) map: Option<MapFigures>,
     weights: Weights,
     units: Units,
     sweep: Vec<Entry>,
@@ -50,7 +53,7 @@ struct Units {
 
 /// A candidate and what it is worth.
 #[derive(Clone, Serialize)]
-struct Entry {
+pub(super) struct Entry {
     estimator: &'static str,
     parameter: Option<&'static str>,
     value: Option<f64>,
@@ -96,28 +99,18 @@ impl Entry {
 }
 
 impl Report {
-    /// Of a sweep of at least one candidate.
-    pub(super) fn new(
-        source: String,
-        is_simulated: bool,
-        tick_hz: f64,
-        weights: Weights,
-        candidates: &[Candidate],
-        judges: &[Judge],
-    ) -> Self {
-        let entry = |(candidate, judge): (&Candidate, &Judge)| {
-            Entry::new(candidate, judge, tick_hz, weights)
-        };
-        let sweep: Vec<_> = candidates.iter().zip(judges).map(entry).collect();
+    /// Of a sweep on `source` against the truth, without a map; what is different is to be set.
+    pub(super) fn new(source: String, tick_hz: f64, weights: Weights, sweep: Vec<Entry>) -> Self {
         let optima = optima(&sweep);
         let lowest = |one: &&usize, other: &&usize| sweep[**one].phi.total_cmp(&sweep[**other].phi);
         let best = optima.iter().min_by(lowest).copied().unwrap_or(0);
         Self {
             schema: "leadscrew/tune-filter/1",
             source,
-            reference: if is_simulated { "truth" } else { "trend" },
+            reference: "truth",
             tick_hz,
-            ticks: judges.first().map_or(0, Judge::ticks),
+            ticks: 0,
+            map: None,
             weights,
             units: Units {
                 lag: "tick",
@@ -140,7 +133,7 @@ impl Report {
         };
         let optima = self.optima.iter().map(|index| &self.sweep[*index]);
         format!(
-            "{}, {} Hz, {} ticks\n\
+            "{}, {} Hz, {} ticks\n{}\
              Φ = {}·t_z + {}·σ; t_z: computed lag of the acceleration, not read off transients as the paper's 8 ticks\n\
              σ: rms error of the acceleration against {against}\n\
              drive: transistor from {TRANSISTOR_HZ} Hz on, thyristor from {THYRISTOR_HZ} Hz on, f = 1/(4 t_z)\n\n\
@@ -149,6 +142,10 @@ impl Report {
             self.source,
             self.tick_hz,
             self.ticks,
+            self.map
+                .as_ref()
+                .map(ToString::to_string)
+                .unwrap_or_default(),
             self.weights.lag,
             self.weights.sigma,
             self.table(optima),
@@ -233,6 +230,18 @@ impl Report {
             ],
         )
     }
+}
+
+/// What each candidate is worth.
+pub(super) fn entries(
+    candidates: &[Candidate],
+    judges: &[Judge],
+    tick_hz: f64,
+    weights: Weights,
+) -> Vec<Entry> {
+    let entry =
+        |(candidate, judge): (&Candidate, &Judge)| Entry::new(candidate, judge, tick_hz, weights);
+    candidates.iter().zip(judges).map(entry).collect()
 }
 
 /// The entry of least Φ of each estimator, in their order.

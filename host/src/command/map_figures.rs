@@ -1,4 +1,4 @@
-//! What became of the encoder map in a replay.
+//! What became of the encoder map on a capture.
 
 use std::fmt;
 
@@ -6,6 +6,7 @@ use leadscrew::encoder_map::Form;
 use leadscrew::encoder_map::tie::{MapHealth, MapState};
 use serde::Serialize;
 
+use crate::listening::Listening;
 use crate::map_file::{MapFile, MapFileError};
 
 /// When the map was tied to the index, and what the indexes showed.
@@ -18,12 +19,15 @@ pub(super) struct TieLog {
 
 impl TieLog {
     /// Takes note of the state after a tick.
-    pub(super) fn note(&mut self, tick: usize, state: MapState, health: MapHealth) {
+    pub(super) fn note(&mut self, tick: usize, listening: &Listening<'_>) {
+        let Some(state) = listening.map_state() else {
+            return;
+        };
         if state == MapState::Tied && self.first_tied.is_none() {
             self.first_tied = Some(tick);
         }
         self.state = state;
-        self.health = health;
+        self.health = listening.map_health();
     }
 }
 
