@@ -1,8 +1,9 @@
 //! An estimator as a command line chooses it: a name, and the parameters that it has.
 
 use leadscrew::estimator::polynomial::Answer;
+use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::estimator::{EstimatorConfig, polynomial, simple};
-use leadscrew::units::RangeError;
+use leadscrew::units::{AxisScale, RangeError};
 
 use super::estimator;
 use crate::error::CommandError;
@@ -52,3 +53,24 @@ pub(super) fn chosen(
         ))
     })
 }
+
+/// The estimator at a control rate: an observer's noise of motion is physical, so it is another one at another rate.
+///
+/// # Errors
+/// A rate at which it cannot be tuned.
+pub(super) fn at_rate(
+    config: EstimatorConfig,
+    tick_hz: f64,
+) -> Result<EstimatorConfig, CommandError> {
+    if !matches!(config, EstimatorConfig::Observer(_)) {
+        return Ok(config);
+    }
+    let tuned = AxisScale::new(REFERENCE_COUNTS_PER_MM, tick_hz)
+        .and_then(|scale| observer::Config::new(&ObserverParams::default(), scale));
+    tuned
+        .map(EstimatorConfig::Observer)
+        .map_err(|error| CommandError::Usage(format!("--tick-hz {tick_hz}: the observer: {error}")))
+}
+
+/// Counts per millimetre of the reference machine, whose motion the observer expects.
+const REFERENCE_COUNTS_PER_MM: f64 = 1000.0;

@@ -10,7 +10,7 @@ use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
-use super::choice::chosen;
+use super::choice::{at_rate, chosen};
 use super::map_figures::{MapFigures, TieLog};
 use super::span::Span;
 use super::{
@@ -42,6 +42,10 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
         Some(name) => vec![chosen(name, args.window, args.answer.as_deref())?],
         None => all_estimators(),
     };
+    let configs = configs
+        .into_iter()
+        .map(|config| at_rate(config, tick_hz))
+        .collect::<Result<Vec<_>, _>>()?;
     let span = Span::new(args.from_s, args.to_s)?;
     let channels = ChannelSelection {
         a: args.a.clone(),
