@@ -54,12 +54,13 @@ impl MoveAndBack {
         &self,
         machine: &MachineParams,
         estimator: EstimatorConfig,
+        mapped: bool,
     ) -> Result<EstimatorConfig, ParamError> {
         if !matches!(estimator, EstimatorConfig::Observer(_)) {
             return Ok(estimator);
         }
         let scale = AxisScale::new(machine.mount.counts_per_mm, self.tick_hz)?;
-        let config = observer::Config::new(&observer_params(machine), scale)?;
+        let config = observer::Config::new(&observer_params(machine, mapped), scale)?;
         Ok(EstimatorConfig::Observer(config))
     }
 
@@ -93,14 +94,25 @@ impl MoveAndBack {
     }
 }
 
-/// What an observer is to count on, on `machine` without an encoder map.
+/// What an observer is to count on, on `machine`; with a map of its encoder (`mapped`), what such a map leaves.
 #[must_use]
-pub fn observer_params(machine: &MachineParams) -> ObserverParams {
+pub fn observer_params(machine: &MachineParams, mapped: bool) -> ObserverParams {
     let (drive, disc, encoder) = (
         &machine.drive,
         &machine.encoder.disc,
         &machine.encoder.encoder,
     );
+    let params = ObserverParams {
+        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
+        natural_period_s: drive.natural_period_s,
+        damping: drive.damping,
+        delay_s: drive.delay_s,
+        offset: drive.offset,
+        ..ObserverParams::default()
+    };
+    if mapped {
+        return params;
+    }
     let edge_variance = encoder.noise_d * encoder.noise_d
         + disc.line_sigma_d * disc.line_sigma_d
         + disc.edge_sigma_d * disc.edge_sigma_d
@@ -109,16 +121,11 @@ pub fn observer_params(machine: &MachineParams) -> ObserverParams {
     let second = 2.0 * disc.second_harmonic_d;
     let waves = disc.eccentricity_d * disc.eccentricity_d + second * second;
     ObserverParams {
-        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
-        natural_period_s: drive.natural_period_s,
-        damping: drive.damping,
-        delay_s: drive.delay_s,
-        offset: drive.offset,
         edge_noise_d: libm::sqrt(edge_variance).max(LEAST_EDGE_NOISE_D),
         time_noise_s: encoder.noise_s,
         map_residual_d: libm::sqrt(waves / 2.0),
         map_wave_mm: disc.edges_per_revolution / machine.mount.counts_per_mm,
-        ..ObserverParams::default()
+        ..params
     }
 }
 
@@ -227,7 +234,20 @@ impl Setup<'_> {
         estimator: EstimatorConfig,
         seed: u64,
     ) -> Result<Self, ScenarioError> {
-        let axis = scenario.axis_params(params, scenario.tuned(params, estimator)?)?;
+        let axis = scenario.axis_params(params, scenario.tuned(params, estimator, false)?)?;
+        Self::with_axis(scenario, params, &axis, seed)
+    }
+
+    /// `scenario` on the machine `params` with the errors that `seed` draws, by the axis of `axis`.
+    ///
+    /// # Errors
+    /// A parameter out of range, or a move that cannot be planned.
+    pub fn with_axis(
+        scenario: &MoveAndBack,
+        params: &MachineParams,
+        axis: &AxisParams,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
         let config = axis.validate()?;
         Ok(Self {
             script: Script::new(scenario, axis.motion.counts_per_mm, &config)?,
@@ -262,12 +282,7 @@ impl<'m> Simulation<'m> {
         estimator: EstimatorConfig,
         seed: u64,
     ) -> Result<Self, ScenarioError> {
-        let Setup {
-            machine,
-            axis,
-            script,
-        } = Setup::new(scenario, params, estimator, seed)?;
-        Ok(Self::new(machine, axis, script))
+        Ok(Setup::new(scenario, params, estimator, seed)?.into())
     }
 
     /// A run of `script` by `axis` on `machine`, both at rest.
@@ -330,5 +345,16 @@ impl<'m> Simulation<'m> {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl<'m> From<Setup<'m>> for Simulation<'m> {
+    fn from(setup: Setup<'m>) -> Self {
+        let Setup {
+            machine,
+            axis,
+            script,
+        } = setup;
+        Self::new(machine, axis, script)
     }
 }

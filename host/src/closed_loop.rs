@@ -5,16 +5,14 @@
 //! ticks in which a move runs, its S-curves included, once the index has been passed and the map is in use: on
 //! a machine homing sees to that. The way back and its ramps lie wholly behind it.
 
-use leadscrew::axis::Axis;
 use leadscrew::controller::tuning::DriveModel;
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::encoder_map::tie::MapState;
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::observer::{self, ObserverParams};
-use leadscrew::units::AxisScale;
+use leadscrew::estimator::observer;
 use leadscrew_hal_mock::encoder::EncoderModel;
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script, Simulation};
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Setup, Simulation};
 
 use crate::statistics::Spread;
 
@@ -98,19 +96,18 @@ impl LoopCase {
             feed_mm_per_min: self.feed_mm_per_min,
             ..MoveAndBack::standard(TICK_HZ)
         };
-        let mut params = scenario.axis_params(&self.nominal, self.observer()?)?;
+        let observer = EstimatorConfig::Observer(observer::Config::of_16k20f3()?);
+        let observer = scenario.tuned(&self.nominal, observer, true)?;
+        let mut params = scenario.axis_params(&self.nominal, observer)?;
         let drive = &self.nominal.drive;
         let model = DriveModel {
             natural_period_s: drive.natural_period_s,
             damping: drive.damping,
         };
         params.controller = model.place_poles(self.bandwidth_rad_per_s)?;
-        let config = params.validate()?;
-        let script = Script::new(&scenario, params.motion.counts_per_mm, &config)?;
-        let mut axis = Axis::new(config);
-        axis.set_map(Some(map));
-        let machine = Machine::new(&self.machine(), TICK_HZ, seed)?;
-        let mut simulation = Simulation::new(machine, axis, script);
+        let setup = Setup::with_axis(&scenario, &self.machine(), &params, seed)?;
+        let mut simulation = Simulation::from(setup);
+        simulation.axis.set_map(Some(map));
         let mut figures = LoopFigures::default();
         while let Some(outputs) = simulation.step()? {
             let shaft = simulation.machine.truth().shaft;
@@ -133,22 +130,5 @@ impl LoopCase {
         machine.drive.full_command_feed_mm_per_min *= self.actual.0;
         machine.drive.natural_period_s *= self.actual.1;
         machine
-    }
-
-    /// An observer tuned on the nominal machine, for an encoder with a map.
-    fn observer(&self) -> Result<EstimatorConfig, ScenarioError> {
-        let drive = &self.nominal.drive;
-        let params = ObserverParams {
-            full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
-            natural_period_s: drive.natural_period_s,
-            damping: drive.damping,
-            delay_s: drive.delay_s,
-            offset: drive.offset,
-            ..ObserverParams::default()
-        };
-        let scale = AxisScale::new(self.nominal.mount.counts_per_mm, TICK_HZ)?;
-        Ok(EstimatorConfig::Observer(observer::Config::new(
-            &params, scale,
-        )?))
     }
 }

@@ -2,11 +2,12 @@
 
 use leadscrew::axis::Outputs;
 use leadscrew::capture::CaptureHealth;
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::hal::Encoder;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Simulation};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Setup, Simulation};
 use leadscrew_hal_mock::tachogenerator;
 
 use crate::listening::Listening;
@@ -17,7 +18,7 @@ use crate::truth::TruthTrack;
 
 /// What is to be run.
 #[derive(Clone, Copy, Debug)]
-pub struct RunSpec {
+pub struct RunSpec<'m> {
     /// The machine.
     pub machine: MachineParams,
     /// The move.
@@ -26,6 +27,8 @@ pub struct RunSpec {
     pub estimator: EstimatorConfig,
     /// Seed of everything random.
     pub seed: u64,
+    /// A map of the encoder, in use from its first index on.
+    pub map: Option<EncoderMap<'m>>,
 }
 
 /// A tick of a run.
@@ -77,18 +80,31 @@ pub fn all_estimators() -> Vec<EstimatorConfig> {
     EstimatorConfig::NAMES.iter().filter_map(named).collect()
 }
 
-impl RunSpec {
+impl RunSpec<'_> {
     /// Runs it.
     ///
     /// # Errors
     /// A parameter that is out of range or a move that cannot be planned.
     pub fn run(&self) -> Result<Run, ScenarioError> {
-        let mut simulation =
-            Simulation::prepare(&self.scenario, &self.machine, self.estimator, self.seed)?;
+        let mapped = self.map.is_some();
+        let Self {
+            machine, scenario, ..
+        } = self;
+        let in_loop = scenario.tuned(machine, self.estimator, mapped)?;
+        let axis = scenario.axis_params(machine, in_loop)?;
+        let setup = Setup::with_axis(scenario, machine, &axis, self.seed)?;
+        let mut simulation = Simulation::from(setup);
+        simulation.axis.set_map(self.map);
         // One that only listens need not fit the machine: an observer then is that of the 16K20F3.
-        let tuned = |config| self.scenario.tuned(&self.machine, config).unwrap_or(config);
+        let tuned = |config| {
+            let tuned = self.scenario.tuned(&self.machine, config, mapped);
+            tuned.unwrap_or(config)
+        };
         let configs: Vec<_> = all_estimators().into_iter().map(tuned).collect();
         let mut listening = Listening::new(&configs, simulation.axis.config().edges);
+        if let Some(map) = self.map {
+            listening = listening.with_map(map);
+        }
         let mut listeners: Vec<_> = configs.into_iter().map(Listener::new).collect();
         let mut progress = Progress::new("simulating", u64::from(simulation.ticks()));
         let mut ticks = Vec::with_capacity(simulation.ticks() as usize);

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A tick takes the encoder's velocity with its lag and a reading, and compares the velocity of the tick before
-//! with what the tachogenerator said at that velocity's own instant ([`readings`]). Gain and offset are fitted
-//! recursively, with forgetting and without a division ([`fit`]).
+//! with what the tachogenerator said at that velocity's own instant (`readings.rs`). Gain and offset are fitted
+//! recursively, with forgetting and without a division (`fit.rs`).
 //!
 //! **Disagreement.** What of the residual (from the fit, once it is learned) lies outside the band, floor + tolerance·speed, is added up, apart for
 //! either sign; the sum falls by the band while the two agree, to zero. It is a distance: when it passes the set one,

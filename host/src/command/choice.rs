@@ -1,7 +1,7 @@
 //! An estimator as a command line chooses it: a name, and the parameters that it has.
 
-use leadscrew::estimator::polynomial::Answer;
 use leadscrew::estimator::observer::{self, ObserverParams};
+use leadscrew::estimator::polynomial::Answer;
 use leadscrew::estimator::{EstimatorConfig, polynomial, simple};
 use leadscrew::units::{AxisScale, RangeError};
 

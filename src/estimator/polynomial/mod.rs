@@ -3,8 +3,8 @@
 //! A sample is a place and the time at which the shaft was there ([`crate::edges`]), so neither the rounding to
 //! whole counts nor jitter of the sampling instant enters. Times are held on a grid of half a tick; what is left of a
 //! sample's time, at most a quarter of a tick, is bridged with the velocity and acceleration found last. Where the
-//! samples stand one a tick, as they do above 1 d/tick, sums slide in constant time ([`regular`]); elsewhere the normal
-//! equations are solved anew ([`fit`]); both in exact integers.
+//! samples stand one a tick, as they do above 1 d/tick, sums slide in constant time (`regular.rs`); elsewhere the normal
+//! equations are solved anew (`fit.rs`); both in exact integers.
 //!
 //! The acceleration is that of the samples' middle. Position and velocity are answered for the middle or,
 //! extrapolated by the quadratic, for the sampling instant ([`Answer`]).

@@ -88,7 +88,7 @@ fn machine(name: &str) -> Result<(&str, MachineParams), CommandError> {
     )))
 }
 
-fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec, CommandError> {
+fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, CommandError> {
     let tick_hz = tick_rate(args.tick_hz)?;
     let move_mm = checked("--move-mm", args.move_mm, -MAX_MOVE_MM, MAX_MOVE_MM)
         .map_err(|error| CommandError::Usage(format!("{error} mm")))?;
@@ -103,6 +103,7 @@ fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec, CommandError>
         scenario,
         estimator: estimator(&args.estimator)?,
         seed: args.seed,
+        map: None,
     })
 }
 
@@ -177,7 +178,7 @@ fn write_csv(path: &Path, run: &Run) -> Result<(), CommandError> {
 }
 
 /// Velocity, acceleration and following error of a run, by the estimator in the loop.
-fn figure(machine: &str, spec: &RunSpec, run: &Run) -> Figure {
+fn figure(machine: &str, spec: &RunSpec<'_>, run: &Run) -> Figure {
     let name = spec.estimator.name();
     let estimates: Vec<_> = run.ticks.iter().map(|tick| tick.outputs.estimate).collect();
     let truth = run.true_states();
