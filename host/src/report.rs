@@ -5,8 +5,8 @@ use std::io::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
 use leadscrew::capture::{CaptureHealth, MAX_DELTA};
-use leadscrew::estimator::{Estimate, EstimatorConfig};
-use leadscrew::units::Variance;
+use leadscrew::estimator::{Estimate, EstimatorConfig, Lags};
+use leadscrew::units::{Lag, Variance};
 use serde::Serialize;
 
 /// Columns of every CSV, in order; further ones are only ever appended.
@@ -101,6 +101,28 @@ impl From<&EstimatorConfig> for LagFigures {
             lag_v_ticks: lags.velocity.to_num(),
             lag_a_ticks: lags.acceleration.to_num(),
         }
+    }
+}
+
+impl LagFigures {
+    /// Means over estimates; none if there are none.
+    #[must_use]
+    pub fn mean(lags: impl Iterator<Item = Lags>) -> Option<Self> {
+        let mut count = 0.0;
+        let mut sums = [0.0; 3];
+        for lags in lags {
+            count += 1.0;
+            let lags: [f64; 3] = [lags.position, lags.velocity, lags.acceleration].map(Lag::to_num);
+            for (sum, lag) in sums.iter_mut().zip(lags) {
+                *sum += lag;
+            }
+        }
+        let [lag_x_ticks, lag_v_ticks, lag_a_ticks] = sums.map(|sum| sum / count);
+        (count > 0.0).then_some(Self {
+            lag_x_ticks,
+            lag_v_ticks,
+            lag_a_ticks,
+        })
     }
 }
 

@@ -41,7 +41,8 @@ fn a_window_sets_lags_and_figures() {
         let names = ["lag_x_ticks", "lag_v_ticks", "lag_a_ticks"];
         for (lag, expected) in names.into_iter().zip(lags) {
             let stated = number(&report, &format!("/estimators/{name}/{lag}"));
-            assert_eq!(stated, expected, "{choice}: {lag}");
+            // The mean of what the estimates state, a window that widens at the start from rest included.
+            assert!((stated - expected).abs() < 0.5, "{choice}: {lag} {stated}");
             // The edges of a tick lie up to half an edge's spacing beside its middle.
             let in_row = table.column(lag)[200];
             assert!((in_row - expected).abs() < 0.1, "{choice}: {lag} {in_row}");

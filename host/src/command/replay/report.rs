@@ -84,7 +84,8 @@ impl Figures {
                 in_span().map(|(_, estimate)| estimate.acceleration.to_num::<f64>()),
             ),
             model: model_without_command(track.config.name()),
-            lags: (&track.config).into(),
+            lags: LagFigures::mean(settled().map(|(_, estimate)| estimate.lags))
+                .unwrap_or_else(|| (&track.config).into()),
         }
     }
 }
