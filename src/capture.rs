@@ -46,6 +46,8 @@ pub struct Observation<'a> {
     pub elapsed: u32,
     /// True where each edge's position can be inferred: as many edge times as the count moved, none lost.
     pub edges_complete: bool,
+    /// The count is in doubt, or more edges came than it moved.
+    is_doubtful: bool,
     capture: &'a Capture<'a>,
 }
 
@@ -78,9 +80,7 @@ impl<'a> Observation<'a> {
         if self.edges_complete && self.delta != 0 {
             return EdgeTimes::All(self.capture.edges);
         }
-        let [older, newer] = self.capture.edges;
-        let reversed = older.len().wrapping_add(newer.len()) > self.delta.unsigned_abs() as usize;
-        if self.delta == 0 || reversed || self.capture.illegal != 0 {
+        if self.delta == 0 || self.is_doubtful {
             return EdgeTimes::None;
         }
         self.since_last_edge()
@@ -172,6 +172,7 @@ impl Unwrapper {
             sampled_at: self.time,
             elapsed,
             edges_complete: edge_times == moved.unsigned_abs() as usize,
+            is_doubtful: false,
             capture,
         };
         // One branch for all that should not be.
@@ -201,6 +202,10 @@ impl Unwrapper {
         observation.delta = moved.clamp(-MAX_DELTA, MAX_DELTA);
         let overspeed = observation.delta != moved;
         observation.edges_complete &= !overrun && illegal == 0 && !overspeed;
+        let [older, newer] = observation.edges();
+        let edge_times = older.len().wrapping_add(newer.len());
+        let is_reversed = edge_times > observation.delta.unsigned_abs() as usize;
+        observation.is_doubtful = illegal != 0 || is_reversed;
 
         let health = &mut self.health;
         health.illegal = health.illegal.saturating_add(u32::from(illegal));

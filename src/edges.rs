@@ -26,6 +26,8 @@ pub const MAX_SPAN_TICKS: u32 = 8;
 pub struct EdgeSample {
     /// Place, d: the mean boundary that the edges stand for, with the mean of their errors by the map.
     pub position: Position,
+    /// What the encoder's errors by the map are of it, Q15.16 d: from where the count alone puts the edges.
+    pub correction: i32,
     /// How long before the sampling instant, ticks.
     pub age: Span,
     /// Edges that it is the mean of, 1 to 2 047.
@@ -66,6 +68,8 @@ pub struct EdgeScale {
     ticks_per_part: u32,
     /// Clocks in [`MAX_SPAN_TICKS`].
     max_clocks: u32,
+    /// Clocks in a tick; 0 where they are not a whole number to 2⁻²⁴ of a tick.
+    clocks_per_tick: u32,
 }
 
 impl EdgeScale {
@@ -80,7 +84,10 @@ impl EdgeScale {
         let whole_bits = (clocks_per_tick as u32).ilog2();
         let part_bits = 28_u32.wrapping_sub(whole_bits);
         let parts_per_tick = libm::ldexp(clocks_per_tick, part_bits.cast_signed());
+        let whole = libm::round(clocks_per_tick);
+        let is_whole = (whole - clocks_per_tick).abs() <= libm::ldexp(clocks_per_tick, -24);
         Ok(Self {
+            clocks_per_tick: if is_whole { whole as u32 } else { 0 },
             part_bits,
             ticks_per_part: libm::round(libm::ldexp(1.0, 60) / parts_per_tick) as u32,
             max_clocks: (clocks_per_tick * f64::from(MAX_SPAN_TICKS) * (1.0 - 1e-9)) as u32,
@@ -231,11 +238,20 @@ impl<'m> EdgeReader<'m> {
         self.config.scale.span(observation.elapsed)
     }
 
+    /// True if that time is a tick to 2⁻²⁴ of it. False says nothing: where a tick is not a
+    /// whole number of clocks, it is for [`Self::elapsed`] to tell.
+    #[inline]
+    #[must_use]
+    pub const fn is_punctual(&self, observation: &Observation<'_>) -> bool {
+        observation.elapsed == self.config.scale.clocks_per_tick
+    }
+
     /// The sample that the edges of the tick make; `None` without an edge, or where they do not tell.
     ///
     /// The tick is the one last [noted](Self::note).
+    // Inlined for the last edge, which costs less than to hand its sample over in memory; the mean is a call.
     #[must_use]
-    #[inline(never)]
+    #[inline(always)]
     pub fn sample(&self, observation: &Observation<'_>) -> Option<EdgeSample> {
         match observation.edge_times() {
             EdgeTimes::None => None,
@@ -256,6 +272,7 @@ impl<'m> EdgeReader<'m> {
         };
         EdgeSample {
             position: place(boundary.wrapping_shl(Position::FRAC_NBITS), error),
+            correction: error,
             age: self.config.scale.span(age),
             edges: 1,
         }
@@ -263,6 +280,7 @@ impl<'m> EdgeReader<'m> {
 
     /// The mean of all edges: from count c₀ to c₁ the boundaries passed are the |c₁ − c₀| ones between,
     /// with the mean (c₀ + c₁ + 1)/2 in either direction.
+    #[inline(never)]
     fn mean(&self, observation: &Observation<'_>, times: [&[u32]; 2]) -> EdgeSample {
         let edges = observation.delta.unsigned_abs();
         let doubled = observation
@@ -282,6 +300,7 @@ impl<'m> EdgeReader<'m> {
         let [older, newer] = times.map(|times| sum_of_ages(observation.sampled_at as u32, times));
         EdgeSample {
             position: place(doubled.wrapping_shl(Position::FRAC_NBITS - 1), error),
+            correction: error,
             age: self
                 .config
                 .scale

@@ -33,10 +33,11 @@ parameter_table! {
 /// Variance of a place, d²: Q2.30.
 pub const PLACE_FRAC: u32 = 30;
 const TIME_FRAC: u32 = 40;
-const SLOPE_FRAC: u32 = 40;
+// With these a product's high word is a deviation with half a variance's bits.
+const SLOPE_FRAC: u32 = 36;
 const CURVATURE_FRAC: u32 = 48;
 /// Fractional bits of v² in (d/tick)²: v is at most 2¹¹.
-const SQUARE_FRAC: u32 = 9;
+const SQUARE_FRAC: u32 = 8;
 
 /// [`EdgeErrors`] as the tick uses them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,8 +130,8 @@ fn scaled(value: f64, frac: u32) -> u32 {
 
 /// v² with [`SQUARE_FRAC`] fractional bits.
 const fn square(velocity: i32) -> u32 {
-    let size = velocity.unsigned_abs().wrapping_shr(10) as u64;
-    size.wrapping_mul(size).wrapping_shr(20 - SQUARE_FRAC) as u32
+    let size = velocity.unsigned_abs() as u64;
+    size.wrapping_mul(size).wrapping_shr(40 - SQUARE_FRAC) as u32
 }
 
 #[cfg(test)]

@@ -95,6 +95,7 @@ impl Estimator {
     }
 
     /// Takes what a tick has to tell.
+    #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
         let observation = evidence.observation;
         let step = i64::from(observation.delta).wrapping_shl(STATE_FRAC);

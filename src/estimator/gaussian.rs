@@ -133,6 +133,7 @@ impl Estimator {
     }
 
     /// Takes what a tick has to tell.
+    #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
         let observation = evidence.observation;
         self.push(observation.delta);

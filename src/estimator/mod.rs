@@ -257,8 +257,10 @@ macro_rules! estimators {
             }
         }
 
-        /// Any estimator.
+        /// Any estimator. Its number is no niche in one of them, and none is inlined beside the others, so that to choose
+        /// one costs a jump.
         #[derive(Clone, Debug)]
+        #[repr(u32)]
         #[expect(clippy::large_enum_variant, reason = "one per axis, and no heap to move the large one to")]
         pub enum Estimator {
             $($(#[$doc])* $variant($module::Estimator),)*

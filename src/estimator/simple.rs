@@ -95,6 +95,7 @@ impl Estimator {
     }
 
     /// Takes what a tick has to tell. An acceleration beyond ±128 d/tick² saturates.
+    #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
         let observation = evidence.observation;
         let window = self.config.window;

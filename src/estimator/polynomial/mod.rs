@@ -121,6 +121,7 @@ impl Estimator {
     }
 
     /// Takes what a tick has to tell.
+    #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
         let Evidence {
             observation, edges, ..

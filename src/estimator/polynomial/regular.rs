@@ -16,9 +16,16 @@ pub struct Regular {
     /// Σk and Σk² over the window.
     ages: i32,
     square_ages: i32,
-    /// Σ2z·x to Q.20 d/tick.
+    /// W².
+    square: i32,
+    /// Of Σx in Σ2z·x; of Σk·x it is −2, both with [`LINE_BITS`].
+    line_of_x: u32,
+    /// Of Σx and −Σk·x in Σ12(z² − Σz²/W)·x; of Σk²·x it is 12, all with [`BEND_BITS`].
+    bend_of_x: u32,
+    bend_of_kx: u32,
+    /// Σ2z·x with [`LINE_BITS`] to Q.20 d/tick.
     of_velocity: Factor,
-    /// Σ12(z² − Σz²/W)·x to Q.24 d/tick².
+    /// Σ12(z² − Σz²/W)·x with [`BEND_BITS`] to Q.24 d/tick².
     of_acceleration: Factor,
     /// 1/W, Q.32.
     per_sample: i32,
@@ -29,6 +36,10 @@ pub struct Regular {
     /// Variance of the acceleration per d² of a sample, [`GAIN_FRAC`].
     pub acceleration_gain: u32,
 }
+
+/// Fractional bits of the sums with polynomials: factors are below ½ by them, and the sums stay below 2⁶¹.
+const LINE_BITS: u32 = 8;
+const BEND_BITS: u32 = 10;
 
 /// Σx, Σk·x and Σk²·x of places with [`PLACE_FRAC`] fractional bits from a base.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,14 +77,20 @@ impl Regular {
         let bend = line * (count * count - 4.0) / 15.0;
         let to_place = |frac: u32| libm::ldexp(1.0, frac.wrapping_sub(PLACE_FRAC).cast_signed());
         let gain = |value: f64| libm::round(libm::ldexp(value, GAIN_FRAC.cast_signed())) as u32;
+        let span = window.wrapping_sub(1);
+        let constant = span.wrapping_mul(window.wrapping_sub(2)).wrapping_mul(2);
         let window = window.cast_signed();
         let ages = window.wrapping_mul(window.wrapping_sub(1)).wrapping_shr(1);
         Self {
             window,
             ages,
             square_ages: (libm::round(line + f64::from(ages) * (count - 1.0) / 2.0)) as i32,
-            of_velocity: Factor::new(to_place(20) / (2.0 * line)),
-            of_acceleration: Factor::new(to_place(24) / (6.0 * bend)),
+            square: window.wrapping_mul(window),
+            line_of_x: span.wrapping_shl(LINE_BITS),
+            bend_of_x: constant.wrapping_shl(BEND_BITS),
+            bend_of_kx: span.wrapping_mul(12).wrapping_shl(BEND_BITS),
+            of_velocity: Factor::new(to_place(20 - LINE_BITS) / (2.0 * line)),
+            of_acceleration: Factor::new(to_place(24 - BEND_BITS) / (6.0 * bend)),
             per_sample: libm::round(libm::ldexp(1.0 / count, 32)) as i32,
             lift: libm::round(libm::ldexp(line / count, 15)) as i32,
             velocity_gain: gain(1.0 / line),
@@ -84,24 +101,25 @@ impl Regular {
     /// Moves the base of the places up by `way`.
     #[inline]
     pub fn move_base(&self, sums: &mut AgeSums, way: i32) {
-        sums.x = sums.x.wrapping_sub(wide(way, self.window));
-        sums.kx = sums.kx.wrapping_sub(wide(way, self.ages));
-        sums.k2x = sums.k2x.wrapping_sub(wide(way, self.square_ages));
+        // A product added is one instruction.
+        let back = way.wrapping_neg();
+        sums.x = sums.x.wrapping_add(wide(back, self.window));
+        sums.kx = sums.kx.wrapping_add(wide(back, self.ages));
+        sums.k2x = sums.k2x.wrapping_add(wide(back, self.square_ages));
     }
 
     /// A tick: all samples get older, one comes, the oldest goes.
     #[inline]
     pub fn exchange(&self, sums: &mut AgeSums, newest: i32, oldest: i32) {
         let AgeSums { x, kx, k2x } = *sums;
-        let gone = wide(oldest, self.window);
+        let gone = oldest.wrapping_neg();
+        let older = kx.wrapping_add(x);
         sums.k2x = k2x
-            .wrapping_add(kx.wrapping_shl(1))
-            .wrapping_add(x)
-            .wrapping_sub(times(gone, self.window));
-        sums.kx = kx.wrapping_add(x).wrapping_sub(gone);
-        sums.x = x
-            .wrapping_add(i64::from(newest))
-            .wrapping_sub(i64::from(oldest));
+            .wrapping_add(kx)
+            .wrapping_add(older)
+            .wrapping_add(wide(gone, self.square));
+        sums.kx = older.wrapping_add(wide(gone, self.window));
+        sums.x = x.wrapping_add(i64::from(newest.wrapping_sub(oldest)));
     }
 
     /// Velocity at the middle, Q12.20 d/tick, and acceleration, Q8.24 d/tick²; they saturate.
@@ -109,12 +127,10 @@ impl Regular {
     pub fn motion(&self, sums: &AgeSums) -> (i32, i32) {
         let AgeSums { x, kx, k2x } = *sums;
         // 2z and 12(z² − Σz²/W) by powers of k.
-        let span = self.window.wrapping_sub(1);
-        let line = times(x, span).wrapping_sub(kx.wrapping_shl(1));
-        let constant = span.wrapping_mul(span.wrapping_sub(1)).wrapping_mul(2);
-        let bend = times(x, constant)
-            .wrapping_sub(times(kx, span.wrapping_mul(12)))
-            .wrapping_add(times(k2x, 12));
+        let line = multiple(x, self.line_of_x).wrapping_sub(kx.wrapping_shl(LINE_BITS + 1));
+        let bend = multiple(x, self.bend_of_x)
+            .wrapping_sub(multiple(kx, self.bend_of_kx))
+            .wrapping_add(multiple(k2x, 12 << BEND_BITS));
         (
             self.of_velocity.apply(line),
             self.of_acceleration.apply(bend),
@@ -134,35 +150,40 @@ impl Regular {
     }
 }
 
-/// A factor of 31 bits and a power of two: right to 2⁻³¹.
+/// `value`·`factor` where it fits; cheaper than with a signed factor.
+#[inline]
+const fn multiple(value: i64, factor: u32) -> i64 {
+    value.wrapping_mul(factor as i64)
+}
+
+/// A factor of 32 bits and a power of two: right to 2⁻³².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Factor {
-    mantissa: i32,
-    /// Right shift of what is left of the product after its last [`CUT_BITS`], 1 to 31.
+    mantissa: u32,
+    /// Right shift of the product's words but the last, 1 to 31.
     shift: u32,
 }
 
-/// Bits that are cut off a product of up to 73 bits at once.
-const CUT_BITS: u32 = 16;
-
 impl Factor {
-    /// Of a factor from 2⁻¹⁶ to 2¹³, as windows of 4 to 64 samples have them.
+    /// Of a factor from 2⁻³⁰ to ½: for windows of 4 to 64 samples they are from 2⁻²⁵ to 2⁻³.
     fn new(factor: f64) -> Self {
         let (_, exponent) = libm::frexp(factor);
-        let bits = 31_i32.wrapping_sub(exponent);
+        let bits = 32_i32.wrapping_sub(exponent);
         Self {
-            mantissa: libm::round(libm::ldexp(factor, bits)).min(f64::from(i32::MAX)) as i32,
-            shift: bits.cast_unsigned().wrapping_sub(CUT_BITS).clamp(1, 31),
+            mantissa: libm::round(libm::ldexp(factor, bits)) as u32,
+            shift: bits.cast_unsigned().wrapping_sub(32).clamp(1, 31),
         }
     }
 
     /// The product to nearest, saturating.
     #[inline]
     fn apply(self, value: i64) -> i32 {
-        let high = wide(value.wrapping_shr(32) as i32, self.mantissa).wrapping_shl(32 - CUT_BITS);
-        let low = times(i64::from(value as u32), self.mantissa).wrapping_shr(CUT_BITS);
-        let half = 1_i64.wrapping_shl(self.shift.wrapping_sub(1));
-        narrow(high.wrapping_add(low).wrapping_add(half), self.shift)
+        let mantissa = u64::from(self.mantissa);
+        let high = value.wrapping_shr(32).wrapping_mul(mantissa.cast_signed());
+        let low = u64::from(value as u32).wrapping_mul(mantissa);
+        let half = 1_u32.wrapping_shl(self.shift.wrapping_sub(1));
+        let low = low.wrapping_shr(32).wrapping_add(u64::from(half));
+        narrow(high.wrapping_add(low.cast_signed()), self.shift)
     }
 }
 
