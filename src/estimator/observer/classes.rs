@@ -1,21 +1,24 @@
 //! Gains by the density of edges, and the drive's response, quantised.
 
-use super::config::MAX_DELAY;
+use super::config::{MAX_DELAY, SIGMA_FRAC};
 use super::design::{Dynamics, Matrix, Steady};
-use super::motion::{COARSE_FRAC, FINE_FRAC, INNOVATION_FRAC};
+use super::motion::{COARSE_FRAC, FINE_FRAC, INNOVATION_FRAC, PLACE_FRAC};
 use super::params::ObserverParams;
 use super::per_tick::PerTick;
 use crate::estimator::Variances;
 use crate::units::{Lag, RangeError, Variance, checked};
 
-/// Octaves of edges a tick below one: gains up to an edge in 2⁷ ticks.
+/// Octaves of edges a tick above one: gains up to 2¹⁰ edges a tick, of which no more than 2 047 come.
+const DENSE: usize = 10;
+/// Octaves of edges a tick below one: gains down to an edge in 2⁷ ticks.
 const SPARSE: usize = 7;
 /// Ticks without an edge for which there are gains.
 pub const MAX_UNSEEN: u32 = 1 << SPARSE;
-/// Octaves from an edge in 2⁷ ticks to 2¹⁰ edges a tick.
-pub const CLASSES: usize = 18;
+/// Octaves from 2¹⁰ edges a tick to an edge in 2⁷ ticks, the densest first: what is beyond the last of them is rarer,
+/// so that one comparison bounds an index.
+pub const CLASSES: usize = DENSE + 1 + SPARSE;
 /// The class of one edge a tick.
-pub const ONE_A_TICK: i32 = SPARSE as i32;
+pub const ONE_A_TICK: usize = DENSE;
 
 /// Exponent of the edges' density with which what the models leave unexplained falls below one edge a tick: at
 /// creep the drive's errors are small, and with noise taken for as large as in full motion the gains between
@@ -33,10 +36,10 @@ const MOST_DOUBLINGS: u32 = 32;
 pub struct Class {
     /// Corrections of x, v, a and δ an innovation, with the fractional bits of [`GainScale`].
     pub gains: [i32; 4],
-    /// 1/σ of the innovation, Q.16.
+    /// 1/σ of the innovation, Q.12: times an innovation its high word is a number of σ in Q.8.
     pub per_sigma: i32,
-    /// Variances of the edges' ages within a tick, ticks², Q.28.
-    pub age_spread: i32,
+    /// Half the variance of the edges' ages within a tick, ticks², Q.24.
+    pub half_age_spread: i32,
     /// Lag of the acceleration.
     pub lag: Lag,
     /// Variances of velocity and acceleration without the long waves.
@@ -65,14 +68,14 @@ pub struct Response {
     pub delay: usize,
 }
 
-/// Density of edges of a class: 2^(index − 7) in a tick.
+/// Density of edges of a class: 2^(10 − index) in a tick.
 fn density(index: usize) -> f64 {
-    libm::ldexp(1.0, (index as i32).wrapping_sub(ONE_A_TICK))
+    libm::ldexp(1.0, (DENSE as i32).wrapping_sub(index as i32))
 }
 
 /// Ticks in which the kinematic filter settles at one edge a tick.
 pub fn warm_up(per_tick: &PerTick, design: &[Steady; CLASSES]) -> u32 {
-    design.get(SPARSE).map_or(0, |steady| {
+    design.get(ONE_A_TICK).map_or(0, |steady| {
         per_tick.kinematic().settling_ticks(&steady.gains)
     })
 }
@@ -82,8 +85,8 @@ pub fn warm_up(per_tick: &PerTick, design: &[Steady; CLASSES]) -> u32 {
 pub fn design(per_tick: &PerTick, dynamics: &Dynamics) -> [Steady; CLASSES] {
     let mut guess: Matrix = [[0.0; 4]; 4];
     let mut steady = [Steady::default(); CLASSES];
-    for (index, steady) in steady.iter_mut().enumerate().rev() {
-        let gap = 1_u32.wrapping_shl(SPARSE.saturating_sub(index) as u32);
+    for (index, steady) in steady.iter_mut().enumerate() {
+        let gap = 1_u32.wrapping_shl(index.saturating_sub(ONE_A_TICK) as u32);
         let dynamics = dynamics.calmed(libm::pow(density(index).min(1.0), CALM));
         let mut variance = per_tick.measurement(density(index));
         for _ in 0..MOST_DOUBLINGS {
@@ -105,12 +108,12 @@ pub fn classes(design: &[Steady; CLASSES], scale: &GainScale, lagging: bool) -> 
         // A class stands for an octave: its middle.
         let edges = density(index) * core::f64::consts::SQRT_2;
         let spread = (1.0 - 1.0 / (edges * edges)).max(0.0) / 12.0;
-        let spread = if index > SPARSE { spread } else { 0.0 };
+        let spread = if index < ONE_A_TICK { spread } else { 0.0 };
         let [velocity, acceleration] = steady.variances;
         *class = Class {
             gains: scale.quantise(&steady.gains),
-            per_sigma: quantised(1.0 / libm::sqrt(steady.innovation), 16),
-            age_spread: quantised(spread, 28),
+            per_sigma: quantised(1.0 / libm::sqrt(steady.innovation), PER_SIGMA_FRAC),
+            half_age_spread: quantised(spread / 2.0, 24),
             lag: if lagging { lag(steady) } else { Lag::ZERO },
             variances: Variances {
                 velocity: variance(velocity),
@@ -120,6 +123,9 @@ pub fn classes(design: &[Steady; CLASSES], scale: &GainScale, lagging: bool) -> 
     }
     classes
 }
+
+/// Fractional bits of [`Class::per_sigma`].
+const PER_SIGMA_FRAC: u32 = 32 + SIGMA_FRAC - INNOVATION_FRAC;
 
 /// lag_a of a filter without a jerk of its own: under constant jerk J every tick's correction of a is J, so the
 /// innovation is J/K_a for each tick of the gap, and what it does to v makes up for the error of a.
@@ -166,7 +172,7 @@ impl GainScale {
             1_i32.wrapping_shl(shift.cast_unsigned())
         };
         Self([
-            multiplier(x, COARSE_FRAC),
+            multiplier(x, PLACE_FRAC),
             multiplier(v, COARSE_FRAC),
             multiplier(a, FINE_FRAC),
             multiplier(d, FINE_FRAC),
@@ -179,7 +185,7 @@ impl GainScale {
             .0
             .map(|multiplier| STATE_OF_GAIN.wrapping_sub(multiplier.trailing_zeros()));
         [
-            x.wrapping_add(COARSE_FRAC),
+            x.wrapping_add(PLACE_FRAC),
             v.wrapping_add(COARSE_FRAC),
             a.wrapping_add(FINE_FRAC),
             d.wrapping_add(FINE_FRAC),

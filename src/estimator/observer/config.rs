@@ -12,8 +12,10 @@ use crate::estimator::{Delay, Lags, Variances};
 use crate::parameter_table::ParameterTable;
 use crate::units::{AxisScale, Lag, RangeError};
 
-/// Fractional bits of [`Config::wave_slope`].
-pub const WAVE_FRAC: u32 = 24;
+/// Largest slope of the long wave; beyond it places would come to lie in another order.
+const MOST_SLOPE: f64 = 0.0624;
+/// Largest curvature of the long wave, 1/d.
+const MOST_CURVATURE: f64 = 1.5e-5;
 /// Fractional bits of a normalised innovation.
 pub const SIGMA_FRAC: u32 = 8;
 /// Most ticks of transport delay.
@@ -37,20 +39,22 @@ pub struct Supervision {
 }
 
 /// Gains, models and thresholds.
+// In the order of their size, as the target reaches the first kilobyte by pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct Config {
-    drive_classes: [Class; CLASSES],
-    kinematic_classes: [Class; CLASSES],
-    pub(super) gain_scale: GainScale,
     pub(super) response: Response,
+    pub(super) gain_scale: GainScale,
     pub(super) supervision: Supervision,
     /// Variances at rest.
     pub(super) rest_variances: Variances,
-    /// Velocity error a velocity that the long wave makes, Q.24.
+    /// Velocity error a velocity that the long wave makes, Q.36.
     pub(super) wave_slope: u32,
-    /// The long wave's wave number, 1/d, Q.32.
-    pub(super) wave_number: u32,
+    /// Acceleration error by the square of a velocity that it makes, 1/d, Q.48.
+    pub(super) wave_curvature: u32,
     warm_up_ticks: u32,
+    drive_classes: [Class; CLASSES],
+    kinematic_classes: [Class; CLASSES],
 }
 
 impl Config {
@@ -70,7 +74,7 @@ impl Config {
         let kinematic = design(&per_tick, &per_tick.kinematic());
         let gain_scale = GainScale::holding(&drive, &kinematic);
         let wave_number = core::f64::consts::TAU / scale.counts_from_mm(params.map_wave_mm);
-        let slope = (params.map_residual_d * wave_number).min(64.0);
+        let slope = params.map_residual_d * wave_number;
         let rest_ticks = (params.rest_s * rate).max(2.0);
         Ok(Self {
             drive_classes: classes(&drive, &gain_scale, false),
@@ -82,8 +86,8 @@ impl Config {
                 velocity: variance(1.0 / (3.0 * rest_ticks * rest_ticks)),
                 acceleration: variance(1.0 / libm::pow(rest_ticks, 4.0)),
             },
-            wave_slope: quantised(slope, WAVE_FRAC).unsigned_abs(),
-            wave_number: libm::ldexp(wave_number.min(0.999), 32) as u32,
+            wave_slope: libm::ldexp(slope.min(MOST_SLOPE), 36) as u32,
+            wave_curvature: libm::ldexp((slope * wave_number).min(MOST_CURVATURE), 48) as u32,
             warm_up_ticks: warm_up(&per_tick, &kinematic),
         })
     }
@@ -117,7 +121,8 @@ impl Config {
     /// quantised.
     #[must_use]
     pub fn gains(&self, model: Model, octave: i32) -> [f64; 4] {
-        let class = self.class(model == Model::Drive, octave.saturating_add(ONE_A_TICK));
+        let index = (ONE_A_TICK as i32).saturating_sub(octave).max(0);
+        let class = self.class(model == Model::Drive, index.unsigned_abs() as usize);
         let mut gains = [0.0; 4];
         for ((gain, bits), frac) in gains
             .iter_mut()
@@ -147,19 +152,16 @@ impl Config {
         ]
     }
 
-    /// Gains by density of edges, 2^(`octave` − 7) in a tick.
-    pub(super) fn class(&self, drive: bool, octave: i32) -> &Class {
+    /// Gains by density of edges, 2^(10 − `index`) in a tick.
+    #[inline]
+    pub(super) fn class(&self, drive: bool, index: usize) -> &Class {
         let classes = if drive {
             &self.drive_classes
         } else {
             &self.kinematic_classes
         };
-        let [slowest, .., fastest] = classes;
-        if octave < 0 {
-            slowest
-        } else {
-            classes.get(octave as usize).unwrap_or(fastest)
-        }
+        let [.., rarest] = classes;
+        classes.get(index).unwrap_or(rarest)
     }
 }
 

@@ -27,7 +27,7 @@
 //! the map's residual of long wave on top: v·slope and v²·curvature. A wrong drive model is not in it: off its
 //! nominal figures the error is several times the stated 1σ while the axis accelerates.
 //!
-//! State is Q11.52 and Q7.56, relative to the newest count; gains are 30-bit mantissas. Against an `f64` oracle of the same
+//! State is Q15.48, Q11.52 and Q7.56, relative to the newest count; gains are 30-bit mantissas. Against an `f64` oracle of the same
 //! recursion (test) the outputs are right to 1e-5 d (half an LSB is 7.6e-6), 4e-6 d/tick and
 //! 3e-6 d/tick².
 mod classes;
@@ -43,11 +43,11 @@ mod supervisor;
 pub use config::Config;
 pub use params::ObserverParams;
 
-use self::motion::{Motion, high};
+use self::motion::Motion;
 use self::supervisor::{Line, Supervisor};
 use super::{Estimate, Evidence};
 use crate::capture::Observation;
-use crate::units::Velocity;
+use crate::units::{Command, Velocity};
 
 /// What the observer takes the motion to follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,30 +62,36 @@ pub enum Model {
 /// A tick in a span of time.
 const TICK: i32 = 1 << 28;
 
-/// Counts by which the motion of a tick may differ from the last velocity; the position's format has some more.
-const MOST_SLIP: u32 = 1000;
 /// A tick that is late or early by no more, 6e-8 of itself, is on time.
 const PUNCTUAL: u32 = 16;
 
+/// The observer.
+// What every tick needs comes first: the target reaches the first kilobyte by pairs.
+#[derive(Clone, Debug)]
+#[repr(C)]
+pub struct Estimator {
+    state: State,
+    config: Config,
+}
+
 /// State of the observer.
 #[derive(Clone, Debug)]
-pub struct Estimator {
-    config: Config,
+#[repr(C)]
+struct State {
     motion: Motion,
-    line: Line,
     supervisor: Supervisor,
-    /// Where the encoder's edges lie against the whole numbers: the map's correction at the newest sample,
-    /// d with [`INNOVATION_FRAC`] bits.
-    placed: i64,
+    /// Where the encoder's edges lie against the whole numbers: the map's correction at the newest sample, Q15.16 d.
+    placed: i32,
     /// Ticks since the last sample or change of the count.
     silence: u32,
     /// Ticks since the last sample.
     unseen: u32,
+    /// Class of the edges' density at the last sample.
+    class: usize,
     /// The position is that of an edge: from the second edge on, velocity is seen.
     anchored: bool,
-    /// Octave of the edges' density, as [`Config::class`] has it.
-    octave: i32,
     restarts: u32,
+    line: Line,
 }
 
 impl Estimator {
@@ -93,16 +99,18 @@ impl Estimator {
     #[must_use]
     pub const fn new(config: Config) -> Self {
         Self {
-            motion: Motion::steady(0),
-            line: Line::new(),
-            supervisor: Supervisor::new(),
-            placed: 0,
-            // Long since: an axis that was never seen to move stands.
-            silence: u32::MAX,
-            unseen: 0,
-            anchored: false,
-            octave: 0,
-            restarts: 0,
+            state: State {
+                motion: Motion::steady(0),
+                supervisor: Supervisor::new(),
+                placed: 0,
+                // Long since: an axis that was never seen to move stands.
+                silence: u32::MAX,
+                unseen: 0,
+                class: 0,
+                anchored: false,
+                restarts: 0,
+                line: Line::new(),
+            },
             config,
         }
     }
@@ -111,122 +119,137 @@ impl Estimator {
     pub fn prime(&mut self, velocity: Velocity) {
         *self = Self::new(self.config);
         if velocity != Velocity::ZERO {
-            self.motion = Motion::steady(velocity.to_bits());
-            self.silence = 0;
+            self.state.motion = Motion::steady(velocity.to_bits());
+            self.state.silence = 0;
         }
     }
 
     /// The model that the newest estimate comes from.
     #[must_use]
     pub const fn model(&self) -> Model {
-        self.supervisor.model()
+        self.state.supervisor.model()
     }
 
     /// How often the drive's model was given up because the motion did not follow it; stops at its maximum.
     #[must_use]
     pub const fn fallbacks(&self) -> u32 {
-        self.supervisor.fallbacks()
+        self.state.supervisor.fallbacks()
     }
 
     /// How often the state was beyond all bounds and the observer began anew (a jump of the count); stops at
     /// its maximum.
     #[must_use]
     pub const fn restarts(&self) -> u32 {
-        self.restarts
+        self.state.restarts
     }
 
     /// Takes what a tick has to tell.
-    // Not inlined: beside it the other estimators of the enum would save its registers too.
     #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let Self { state, config } = self;
         let observation = evidence.observation;
-        let wanted = self.wanted(evidence);
-        let resting = self.silence >= self.config.supervision.rest_ticks;
-        if self.supervisor.model() == Model::Kinematic {
-            self.shadow(wanted, resting);
-        }
-        let jerk = match self.supervisor.model() {
-            Model::Drive => self.drive_jerk(wanted),
-            Model::Kinematic => 0,
-        };
-        if resting && observation.delta == 0 && self.rests(jerk) {
-            self.motion.velocity = 0;
-            self.motion.acceleration = 0;
-        } else {
-            let slip = high(self.motion.velocity)
-                .wrapping_shr(Velocity::FRAC_NBITS)
-                .wrapping_sub(observation.delta);
-            if slip.unsigned_abs() > MOST_SLIP {
-                self.restart(observation);
-            }
-            self.motion.advance(jerk, observation.delta);
-            let elapsed = evidence.edges.elapsed(observation).to_bits().cast_signed();
-            let late = elapsed.wrapping_sub(TICK);
-            if late.unsigned_abs() > PUNCTUAL && elapsed != 0 {
-                self.motion.carry(late);
+        let jerk = state.jerk(config, evidence.command);
+        let resting = state.silence >= config.supervision.rest_ticks;
+        if !(resting && observation.delta == 0 && state.rests(config, jerk)) {
+            state.motion.advance(jerk, observation.delta);
+            if !evidence.edges.is_punctual(observation) {
+                state.carry(evidence);
             }
         }
-        match evidence.edges.sample(observation) {
-            Some(sample) => self.see(observation, &sample),
-            None => self.hold(observation),
-        }
-        if self.motion.is_wild() {
-            self.restart(observation);
-        }
-        self.estimate(observation)
-    }
-
-    /// The velocity that the drive aims at in this tick, Q11.20, if its command is known.
-    #[inline]
-    fn wanted(&mut self, evidence: &Evidence<'_>) -> Option<i64> {
-        let response = &self.config.response;
-        let command = self.line.pass(evidence.command, response.delay)?;
-        Some(response.wanted(command))
-    }
-
-    /// Jerk by the drive's model, disturbance included; without a command the model is left.
-    #[inline]
-    fn drive_jerk(&mut self, wanted: Option<i64>) -> i64 {
-        let Some(wanted) = wanted else {
-            self.supervisor.lose_command();
-            return 0;
+        let Some(sample) = evidence.edges.sample(observation) else {
+            return state.without_edge(config, observation);
         };
+        let class = state.see(config, observation, &sample);
+        if state.motion.is_wild() {
+            state.restart(observation);
+        }
+        let variances = config.with_long_wave(&class.variances, state.motion.velocity_q20());
+        state.estimate(observation, class.lag, variances)
+    }
+}
+
+impl State {
+    /// Jerk by the model that runs.
+    #[inline]
+    fn jerk(&mut self, config: &Config, command: Option<Command>) -> i64 {
+        let response = &config.response;
+        let wanted = self
+            .line
+            .pass(command, response.delay)
+            .map(|command| response.wanted(command));
+        match wanted {
+            Some(wanted) if self.supervisor.model() == Model::Drive => {
+                self.drive_jerk(config, wanted)
+            }
+            _ => self.other_jerk(config, wanted),
+        }
+    }
+
+    /// Jerk by the drive's model, disturbance included.
+    #[inline]
+    const fn drive_jerk(&self, config: &Config, wanted: i32) -> i64 {
         let motion = &self.motion;
-        self.config
+        config
             .response
             .jerk(wanted, motion.velocity, motion.acceleration)
             .wrapping_add(motion.disturbance)
     }
 
-    /// In silence: true if nothing speaks against rest. The disturbance then slowly takes up whatever command
-    /// does not move the axis; one that changes faster ends the rest before the first edge does.
+    /// Jerk where the drive's model does not run, or its command is missing; it may be taken up or left by that.
+    #[inline(never)]
+    fn other_jerk(&mut self, config: &Config, wanted: Option<i32>) -> i64 {
+        if self.supervisor.model() == Model::Kinematic {
+            let Config {
+                response,
+                supervision,
+                ..
+            } = config;
+            let resting = self.silence >= supervision.rest_ticks;
+            self.supervisor
+                .shadow(response, supervision, &mut self.motion, wanted, resting);
+        }
+        match (self.supervisor.model(), wanted) {
+            (Model::Kinematic, _) => 0,
+            (Model::Drive, Some(wanted)) => self.drive_jerk(config, wanted),
+            (Model::Drive, None) => {
+                self.supervisor.lose_command();
+                0
+            }
+        }
+    }
+
+    /// Goes on by what the tick was longer or shorter than a tick.
     #[cold]
-    fn rests(&mut self, jerk: i64) -> bool {
-        if jerk.unsigned_abs() > self.config.supervision.release_jerk.unsigned_abs() {
+    #[inline(never)]
+    fn carry(&mut self, evidence: &Evidence<'_>) {
+        let elapsed = evidence.edges.elapsed(evidence.observation).to_bits();
+        let late = elapsed.cast_signed().wrapping_sub(TICK);
+        if late.unsigned_abs() > PUNCTUAL && elapsed != 0 {
+            self.motion.carry(late);
+        }
+    }
+
+    /// In silence: true if nothing speaks against rest, and then v and a are zero. The disturbance then slowly takes up
+    /// whatever command does not move the axis; one that changes faster ends the rest before the first edge does.
+    #[cold]
+    #[inline(never)]
+    fn rests(&mut self, config: &Config, jerk: i64) -> bool {
+        if jerk.unsigned_abs() > config.supervision.release_jerk.unsigned_abs() {
             self.silence = 0;
             return false;
         }
-        self.motion.disturbance = self
-            .motion
+        let motion = &mut self.motion;
+        motion.disturbance = motion
             .disturbance
             .wrapping_sub(jerk.wrapping_shr(REST_SHIFT));
+        motion.velocity = 0;
+        motion.acceleration = 0;
         true
-    }
-
-    /// Whether the drive's model would do again.
-    #[inline(never)]
-    fn shadow(&mut self, wanted: Option<i64>, resting: bool) {
-        let Config {
-            response,
-            supervision,
-            ..
-        } = &self.config;
-        self.supervisor
-            .shadow(response, supervision, &mut self.motion, wanted, resting);
     }
 
     /// From the count's middle, at the speed at which it moves.
     #[cold]
+    #[inline(never)]
     fn restart(&mut self, observation: &Observation<'_>) {
         self.restarts = self.restarts.saturating_add(1);
         self.motion = Motion::steady(observation.delta.wrapping_shl(Velocity::FRAC_NBITS));

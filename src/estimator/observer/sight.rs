@@ -1,70 +1,102 @@
 //! What a tick's edges, or their absence, do to the state.
 
-use super::classes::{MAX_UNSEEN, ONE_A_TICK};
-use super::motion::{COARSE_FRAC, INNOVATION_FRAC};
-use super::{Estimator, Model};
+use super::classes::{Class, MAX_UNSEEN, ONE_A_TICK};
+use super::config::Config;
+use super::motion::{INNOVATION_FRAC, PLACE_FRAC, high};
+use super::{Model, State};
 use crate::capture::Observation;
 use crate::edges::EdgeSample;
-use crate::units::Position;
+use crate::estimator::Estimate;
+use crate::units::{Lag, Position};
 
 /// How far beyond its discrete a position may lie unpunished, d: what the places of the edges differ by.
 const TOLERANCE: i64 = ONE / 4;
-/// Octave of the gains at the end of a discrete: those of an edge in four ticks end a motion within some ten
+/// Class of the gains at the end of a discrete: those of an edge in four ticks end a motion within some ten
 /// ticks, and do not take a place that is a little off for a motion.
-const HOLD_OCTAVE: i32 = ONE_A_TICK - 2;
-/// One d as an innovation.
-const ONE: i64 = 1 << INNOVATION_FRAC;
-impl Estimator {
-    /// Corrects by a sample of the edges.
+const HOLD_CLASS: usize = ONE_A_TICK + 2;
+/// One d as a position.
+const ONE: i64 = 1 << PLACE_FRAC;
+
+impl State {
+    /// Corrects by a sample of the edges; gives the class of their density.
     #[inline]
-    pub(super) fn see(&mut self, observation: &Observation<'_>, sample: &EdgeSample) {
-        let octave = density(sample.edges, self.unseen);
-        // Beyond the last class velocity is not followed, only bounded by silence.
-        self.anchored &= self.unseen < MAX_UNSEEN;
-        self.octave = octave;
+    pub(super) fn see<'c>(
+        &mut self,
+        config: &'c Config,
+        observation: &Observation<'_>,
+        sample: &EdgeSample,
+    ) -> &'c Class {
+        let unseen = self.unseen;
+        self.class = density(sample.edges, unseen);
         self.silence = 0;
         self.unseen = 0;
         let drive = self.supervisor.model() == Model::Drive;
-        let class = self.config.class(drive, octave);
+        let class = config.class(drive, self.class);
         let place = relative(observation, sample);
-        let predicted = self
+        let innovation = self
             .motion
-            .position_ago(sample.age.to_bits(), class.age_spread);
-        let innovation = place.wrapping_sub(predicted);
-        self.placed = place.wrapping_sub(nominal(observation, sample));
-        if !self.anchored {
+            .missed_by(place, sample.age.to_bits(), class.half_age_spread);
+        self.placed = sample.correction;
+        // Beyond the last class velocity is not followed, only bounded by silence.
+        if !self.anchored || unseen >= MAX_UNSEEN {
             self.anchored = true;
-            let correction = innovation.wrapping_shl(COARSE_FRAC - INNOVATION_FRAC);
-            self.motion.position = self.motion.position.wrapping_add(correction);
-            return;
+            self.motion.position = self.motion.position.wrapping_add(innovation);
+            return class;
         }
         let Some(innovation) = credible(innovation) else {
             self.restart(observation);
-            return;
+            return config.class(false, self.class);
         };
         self.motion
-            .correct(innovation, &class.gains, &self.config.gain_scale);
-        if drive {
-            self.supervisor
-                .weigh(innovation, class.per_sigma, &self.config.supervision);
+            .correct(innovation, &class.gains, &config.gain_scale);
+        if drive
+            && self
+                .supervisor
+                .weigh(innovation, class.per_sigma, &config.supervision)
+        {
+            return config.class(false, self.class);
         }
+        class
+    }
+
+    /// A tick without a sample.
+    #[inline(never)]
+    pub(super) fn without_edge(
+        &mut self,
+        config: &Config,
+        observation: &Observation<'_>,
+    ) -> Estimate {
+        self.hold(config, observation);
+        if self.motion.is_wild() {
+            self.restart(observation);
+        }
+        let drive = self.supervisor.model() == Model::Drive;
+        let class = config.class(drive, self.class);
+        let velocity = self.motion.velocity_q20();
+        if self.silence < config.supervision.rest_ticks {
+            let variances = config.with_long_wave(&class.variances, velocity);
+            return self.estimate(observation, class.lag, variances);
+        }
+        let lag = if self.motion.velocity == 0 {
+            Lag::ZERO
+        } else {
+            class.lag
+        };
+        self.estimate(observation, lag, config.rest_variances)
     }
 
     /// Without a sample the shaft is within the discrete all the same; a position that left it is brought
     /// back to its nearer end.
     #[inline]
-    pub(super) fn hold(&mut self, observation: &Observation<'_>) {
+    fn hold(&mut self, config: &Config, observation: &Observation<'_>) {
         self.silence = if observation.delta == 0 {
             self.silence.saturating_add(1)
         } else {
             0
         };
         self.unseen = self.unseen.saturating_add(1);
-        let position = self
-            .motion
-            .position
-            .wrapping_shr(COARSE_FRAC - INNOVATION_FRAC)
-            .wrapping_sub(self.placed);
+        let placed = i64::from(self.placed).wrapping_shl(32);
+        let position = self.motion.position.wrapping_sub(placed);
         let outside = if position < TOLERANCE.wrapping_neg() {
             TOLERANCE.wrapping_neg().wrapping_sub(position)
         } else if position > ONE + TOLERANCE {
@@ -77,8 +109,8 @@ impl Estimator {
             return;
         };
         let drive = self.supervisor.model() == Model::Drive;
-        let gains = &self.config.class(drive, HOLD_OCTAVE).gains;
-        self.motion.correct(outside, gains, &self.config.gain_scale);
+        let gains = &config.class(drive, HOLD_CLASS).gains;
+        self.motion.correct(outside, gains, &config.gain_scale);
         // What is taken for having stopped the shaft must not drive it back.
         let inward = (self.motion.acceleration ^ i64::from(outside)) >= 0;
         if !drive && inward {
@@ -87,42 +119,33 @@ impl Estimator {
     }
 }
 
-/// Octave of the density of edges: of `edges` now, after `unseen` ticks without. Where it lies between two it is the
-/// lower one: gains for a longer time than that which passed are stable, those for a shorter one need not be.
+/// Class of the density of edges: of `edges` now, after `unseen` ticks without. Where it lies between two octaves it is
+/// the lower one: gains for a longer time than that which passed are stable, those for a shorter one need not be.
 #[inline]
-const fn density(edges: u32, unseen: u32) -> i32 {
-    let dense = (edges | 1).ilog2().cast_signed();
-    let sparse = u32::BITS.wrapping_sub(unseen.leading_zeros()).cast_signed();
-    dense.wrapping_sub(sparse).wrapping_add(ONE_A_TICK)
+const fn density(edges: u32, unseen: u32) -> usize {
+    // The octave of the ticks and one more, less that of the edges, by their leading zeros.
+    let octaves = edges.leading_zeros().wrapping_sub(unseen.leading_zeros());
+    octaves.wrapping_add(const { ONE_A_TICK as u32 + 1 }) as usize
 }
 
-/// Place of a sample relative to the count, d with [`INNOVATION_FRAC`] bits.
+/// Place of a sample relative to the count, Q15.16 d.
 #[inline]
-const fn relative(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
+const fn relative(observation: &Observation<'_>, sample: &EdgeSample) -> i32 {
     // No further than the motion of a tick and the map's correction: the low words suffice.
     let count = (observation.count as i32).wrapping_shl(Position::FRAC_NBITS);
-    let place = sample.position.to_bits() as i32;
-    (place.wrapping_sub(count) as i64).wrapping_shl(INNOVATION_FRAC - Position::FRAC_NBITS)
+    (sample.position.to_bits() as i32).wrapping_sub(count)
 }
 
-/// Where the sample would lie if every edge lay at its whole number.
+/// A difference of positions within ±8 d, which is that of a motion and not of a jump of the count, as an innovation.
 #[inline]
-const fn nominal(observation: &Observation<'_>, sample: &EdgeSample) -> i64 {
-    let delta = observation.delta as i64;
-    if sample.edges == 1 {
-        if delta < 0 { ONE } else { 0 }
-    } else {
-        ONE.wrapping_sub(delta.wrapping_shl(INNOVATION_FRAC))
-            .wrapping_shr(1)
-    }
-}
-
-/// An innovation within ±8 d, which is that of a motion and not of a jump of the count.
-#[inline]
-const fn credible(innovation: i64) -> Option<i32> {
-    let low = innovation as i32;
-    if low as i64 == innovation {
-        Some(low)
+const fn credible(difference: i64) -> Option<i32> {
+    const MOST: u32 = 8 << (PLACE_FRAC - 32);
+    const SHIFT: u32 = PLACE_FRAC - INNOVATION_FRAC;
+    let high = high(difference);
+    if high.cast_unsigned().wrapping_add(MOST) < 2 * MOST {
+        // By words: the compiler then multiplies what comes of it as 32 bits.
+        let low = (difference as u32).wrapping_shr(SHIFT).cast_signed();
+        Some(high.wrapping_shl(32 - SHIFT) | low)
     } else {
         None
     }

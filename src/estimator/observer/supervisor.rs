@@ -3,11 +3,11 @@
 use super::Model;
 use super::classes::Response;
 use super::config::{MAX_DELAY, SIGMA_FRAC, Supervision};
-use super::motion::{INNOVATION_FRAC, Motion};
+use super::motion::{Motion, high};
 use crate::units::Command;
 
 /// Innovations beyond so many σ count as so many.
-const MOST_SIGMAS: i32 = 127 << SIGMA_FRAC;
+const MOST_SIGMAS: i32 = 128 << SIGMA_FRAC;
 /// The mean square of the innovations is taken over 2ⁿ samples.
 const MEAN_SHIFT: u32 = 4;
 /// The shadow follows the acceleration with 2⁻³ of its error a tick and the disturbance with 2⁻⁸: critically
@@ -20,19 +20,23 @@ const PLACES: usize = MAX_DELAY + 1;
 
 /// Commands on their way.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Line {
-    commands: [i32; PLACES],
     place: usize,
     /// Commands known without a gap.
     known: usize,
+    commands: [i32; PLACES],
 }
+
+/// Full command.
+const FULL: i32 = 1 << Command::FRAC_NBITS;
 
 impl Line {
     pub const fn new() -> Self {
         Self {
-            commands: [0; PLACES],
             place: 0,
             known: 0,
+            commands: [0; PLACES],
         }
     }
 
@@ -46,7 +50,8 @@ impl Line {
         let place = self.place.wrapping_add(1) % PLACES;
         self.place = place;
         if let Some(slot) = self.commands.get_mut(place) {
-            *slot = command.to_bits();
+            // No more than full, by one instruction.
+            *slot = command.to_bits().clamp(-FULL, FULL.wrapping_sub(1));
         }
         if self.known < delay {
             self.known = self.known.wrapping_add(1);
@@ -112,19 +117,12 @@ impl Supervisor {
         self.restart();
     }
 
-    /// Takes an innovation of the drive's model.
+    /// Takes an innovation of the drive's model; true if the model is given up for it.
     #[inline]
-    pub const fn weigh(&mut self, innovation: i32, per_sigma: i32, supervision: &Supervision) {
-        // Q28 · Q16 for 8.
-        let sigmas = (innovation as i64)
-            .wrapping_mul(per_sigma as i64)
-            .wrapping_shr(INNOVATION_FRAC + 16 - SIGMA_FRAC);
-        let sigmas = sigmas.unsigned_abs();
-        let sigmas = if sigmas > MOST_SIGMAS as u64 {
-            MOST_SIGMAS
-        } else {
-            sigmas as i32
-        };
+    pub fn weigh(&mut self, innovation: i32, per_sigma: i32, supervision: &Supervision) -> bool {
+        let sigmas = high((innovation as i64).wrapping_mul(per_sigma as i64));
+        // These bounds are one instruction.
+        let sigmas = sigmas.clamp(-MOST_SIGMAS, MOST_SIGMAS.wrapping_sub(1));
         let square = sigmas.wrapping_mul(sigmas);
         let change = square
             .wrapping_sub(self.mean_square)
@@ -132,12 +130,22 @@ impl Supervisor {
         self.mean_square = self.mean_square.wrapping_add(change);
         if self.mean_square <= supervision.fallback_level {
             self.persisted = 0;
+            false
         } else {
-            self.persisted = self.persisted.wrapping_add(1);
-            if self.persisted > supervision.fallback_ticks {
-                self.fall_back();
-            }
+            self.persist(supervision.fallback_ticks)
         }
+    }
+
+    /// Another tick in which the drive's model was bad.
+    #[cold]
+    #[inline(never)]
+    const fn persist(&mut self, ticks: u32) -> bool {
+        self.persisted = self.persisted.wrapping_add(1);
+        let given_up = self.persisted > ticks;
+        if given_up {
+            self.fall_back();
+        }
+        given_up
     }
 
     #[cold]
@@ -153,7 +161,7 @@ impl Supervisor {
         response: &Response,
         supervision: &Supervision,
         motion: &mut Motion,
-        wanted: Option<i64>,
+        wanted: Option<i32>,
         resting: bool,
     ) {
         let Some(wanted) = wanted else {
