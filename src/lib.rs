@@ -1,24 +1,24 @@
 //! Motion control of one machine-tool axis with a quadrature encoder, in fixed point.
 //!
 //! ```text
-//! setpoint ──────────────┐
-//! (trajectory)           ▼
-//!                    ┌─────────┐      ┌────────────┐     ┌────────┐
-//! encoder ─► capture │estimator│ ───► │ controller │ ──► │ output │ ──► drive ±10 V
-//!  A B Z     count + └─────────┘      │ PID+FF     │     │ limits │
-//!  probe     edge times               └────────────┘     └────────┘
-//!                                       telemetry ◄── every stage
+//! setpoint ─────────────────────────┐
+//! (trajectory)                      ▼
+//!                               ┌─────────┐      ┌────────────┐     ┌────────┐
+//! encoder ─► capture ─► edges ─►│estimator│ ───► │ controller │ ──► │ output │ ──► drive ±10 V
+//!  A B Z     count +    (map)   └─────────┘      │ PID+FF     │     │ limits │
+//!  probe     edge times              │           └────────────┘     └────────┘
+//!                     tachogenerator ┴► check      telemetry ◄── every stage
 //! ```
 //!
 //! Read in the order of the path: [`hal`] is the seam to a board, [`quadrature`] decodes where no
 //! hardware does, [`capture`] unwraps, [`edges`] says where the shaft was and when, by [`encoder_map`]
-//! where the encoder's own errors are known, [`estimator`] finds velocity and acceleration, [`setpoint`] says where to be, [`controller`] what to do about it, [`output`] limits it, [`telemetry`] tells of
-//! it. [`axis`] puts them together into one pure step; [`params`] makes its configuration from
-//! physical units, by the conversions in [`units`].
+//! where the encoder's own errors are known, [`estimator`] finds velocity and acceleration with their
+//! [`uncertainty`], [`setpoint`] says where to be, [`controller`] what to do about it, [`output`] limits it,
+//! [`telemetry`] tells of it. [`axis`] puts them together into one pure step; [`params`] makes its
+//! configuration from physical units, by the conversions in [`units`].
 //!
-//! Beside the path, [`tachogenerator`] checks the encoder by a second sensor.
-//!
-//! Outside the tick, [`calibration`] learns where the encoder's edges really lie.
+//! Beside the path, [`tachogenerator`] checks the encoder by a second sensor. Outside the tick,
+//! [`calibration`] learns where the encoder's edges really lie.
 //!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
 //! counters wrap by type and are unwrapped in one place, everything else saturates or is bounded by
