@@ -104,9 +104,7 @@ proptest! {
                 let heard = listener.hear(&capture, tick.command.map(Command::from_bits));
                 let Estimate { position, velocity, .. } = heard.estimate;
                 let apart = position.to_num::<f64>() - heard.count as f64;
-                // An edge may be told to be 8 ticks old: where the largest velocity leads in that time and a tick, against
-                // a count that goes the other way. The format has 32 768 d.
-                prop_assert!(apart.abs() <= 22_700.0, "{apart} d from the count");
+                prop_assert!(apart.abs() <= 4097.0, "{apart} d from the count");
                 prop_assert!(velocity.to_num::<f64>().abs() <= 2047.0);
             }
         }

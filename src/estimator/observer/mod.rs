@@ -46,7 +46,6 @@ pub use params::ObserverParams;
 use self::motion::Motion;
 use self::supervisor::{Line, Supervisor};
 use super::{Estimate, Evidence};
-use crate::capture::Observation;
 use crate::units::{Command, Velocity};
 
 /// What the observer takes the motion to follow.
@@ -161,7 +160,7 @@ impl Estimator {
         };
         let class = state.see(config, observation, &sample);
         if state.motion.is_wild() {
-            state.restart(observation);
+            state.restart(observation.delta);
         }
         let variances = config.with_long_wave(&class.variances, state.motion.velocity_q20());
         state.estimate(observation, class.lag, variances)
@@ -250,9 +249,9 @@ impl State {
     /// From the count's middle, at the speed at which it moves.
     #[cold]
     #[inline(never)]
-    fn restart(&mut self, observation: &Observation<'_>) {
+    fn restart(&mut self, delta: i32) {
         self.restarts = self.restarts.saturating_add(1);
-        self.motion = Motion::steady(observation.delta.wrapping_shl(Velocity::FRAC_NBITS));
+        self.motion = Motion::steady(delta.wrapping_shl(Velocity::FRAC_NBITS));
         self.supervisor.doubt();
         self.placed = 0;
         self.silence = 0;

@@ -5,8 +5,8 @@
 
 use super::classes::{GainScale, Response};
 
-/// Fractional bits of the position. Its range is 16 times that of the greatest way in a tick, so that it need not be
-/// watched: an innovation that is not credible ends it in time.
+/// Fractional bits of the position. Its range is 16 times the greatest way in a tick, so that a tick, or the way from an
+/// edge of [`crate::edges::MAX_SPAN_TICKS`], does not leave it and it is watched at a tick's end alone.
 pub const PLACE_FRAC: u32 = 48;
 /// Fractional bits of the velocity.
 pub const COARSE_FRAC: u32 = 52;
@@ -15,8 +15,11 @@ pub const FINE_FRAC: u32 = 56;
 /// Fractional bits of an innovation, which is within ±8 d.
 pub const INNOVATION_FRAC: u32 = 28;
 
-/// Bound of the high words: ±2 047 d/tick, ±127.9 d/tick² and d/tick³.
-const HIGHEST: u32 = 0x7ff << (COARSE_FRAC - 32);
+/// Bound of the position's high word, ±2 047 d from the count.
+const FARTHEST: i32 = 0x7ff << (PLACE_FRAC - 32);
+/// Bound of the others' high words, ±2 047 d/tick, ±127.9 d/tick² and d/tick³.
+const HIGHEST: i32 = 0x7ff << (COARSE_FRAC - 32);
+
 /// 1/6 in Q.24: times a high word of Q.24 it is the position's format.
 const SIXTH: i32 = 0x002a_aaab;
 
@@ -99,10 +102,12 @@ impl Motion {
     /// Whether a part is beyond what any axis does.
     #[inline]
     pub const fn is_wild(&self) -> bool {
-        let v = high(self.velocity).unsigned_abs();
-        let a = high(self.acceleration).unsigned_abs();
-        let d = high(self.disturbance).unsigned_abs();
-        v > HIGHEST || a > HIGHEST || d > HIGHEST
+        let x = room(self.position, FARTHEST);
+        let v = room(self.velocity, HIGHEST);
+        let a = room(self.acceleration, HIGHEST);
+        let d = room(self.disturbance, HIGHEST);
+        // One branch for all: their union has a sign if one of them has.
+        (x | v | a | d) < 0
     }
 
     /// Velocity, Q11.20, rounded.
@@ -137,6 +142,15 @@ impl Response {
         let wanted = product(command, self.full_velocity).wrapping_shr(30) as i32;
         wanted.saturating_add(self.offset)
     }
+}
+
+/// What is left from a state's size to the `bound` of its high word; below zero beyond it.
+#[inline]
+const fn room(state: i64, bound: i32) -> i32 {
+    let high = high(state);
+    // |high|, or one less where it is negative, in one instruction.
+    let size = high ^ high.wrapping_shr(31);
+    bound.wrapping_sub(size)
 }
 
 /// The high word of a state.

@@ -5,15 +5,17 @@ use super::config::Config;
 use super::motion::{INNOVATION_FRAC, PLACE_FRAC, high};
 use super::{Model, State};
 use crate::capture::Observation;
-use crate::edges::EdgeSample;
+use crate::edges::{EdgeSample, Span};
 use crate::estimator::Estimate;
-use crate::units::{Lag, Position};
+use crate::units::{Lag, Position, Velocity};
 
 /// How far beyond its discrete a position may lie unpunished, d: what the places of the edges differ by.
 const TOLERANCE: i64 = ONE / 4;
 /// Class of the gains at the end of a discrete: those of an edge in four ticks end a motion within some ten
 /// ticks, and do not take a place that is a little off for a motion.
 const HOLD_CLASS: usize = ONE_A_TICK + 2;
+/// By how much the motion of a tick may differ from a velocity that no edge has confirmed, Q11.20 d/tick.
+const MOST_SLIP: u32 = 1000 << Velocity::FRAC_NBITS;
 /// One d as a position.
 const ONE: i64 = 1 << PLACE_FRAC;
 
@@ -30,21 +32,20 @@ impl State {
         self.class = density(sample.edges, unseen);
         self.silence = 0;
         self.unseen = 0;
+        self.placed = sample.correction;
         let drive = self.supervisor.model() == Model::Drive;
         let class = config.class(drive, self.class);
         let place = relative(observation, sample);
+        // Beyond the last class velocity is not followed, only bounded by silence.
+        if !self.anchored || unseen >= MAX_UNSEEN {
+            self.anchor(observation.delta, place, sample.age);
+            return class;
+        }
         let innovation = self
             .motion
             .missed_by(place, sample.age.to_bits(), class.half_age_spread);
-        self.placed = sample.correction;
-        // Beyond the last class velocity is not followed, only bounded by silence.
-        if !self.anchored || unseen >= MAX_UNSEEN {
-            self.anchored = true;
-            self.motion.position = self.motion.position.wrapping_add(innovation);
-            return class;
-        }
         let Some(innovation) = credible(innovation) else {
-            self.restart(observation);
+            self.restart(observation.delta);
             return config.class(false, self.class);
         };
         self.motion
@@ -59,6 +60,23 @@ impl State {
         class
     }
 
+    /// The first edge in a long time, or since the state was lost, gives the position alone, by a velocity that is not
+    /// far off.
+    #[cold]
+    #[inline(never)]
+    fn anchor(&mut self, delta: i32, place: i32, age: Span) {
+        let moved = delta.wrapping_shl(Velocity::FRAC_NBITS);
+        let slip = high(self.motion.velocity).saturating_sub(moved);
+        if slip.unsigned_abs() > MOST_SLIP {
+            let placed = self.placed;
+            self.restart(delta);
+            self.placed = placed;
+        }
+        let missed = self.motion.missed_by(place, age.to_bits(), 0);
+        self.motion.position = self.motion.position.wrapping_add(missed);
+        self.anchored = true;
+    }
+
     /// A tick without a sample.
     #[inline(never)]
     pub(super) fn without_edge(
@@ -68,7 +86,7 @@ impl State {
     ) -> Estimate {
         self.hold(config, observation);
         if self.motion.is_wild() {
-            self.restart(observation);
+            self.restart(observation.delta);
         }
         let drive = self.supervisor.model() == Model::Drive;
         let class = config.class(drive, self.class);
@@ -105,7 +123,7 @@ impl State {
             return;
         };
         let Some(outside) = credible(outside) else {
-            self.restart(observation);
+            self.restart(observation.delta);
             return;
         };
         let drive = self.supervisor.model() == Model::Drive;
