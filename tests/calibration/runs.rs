@@ -1,6 +1,6 @@
 //! Runs of one encoder put together: order, captures apart, directions.
 
-use leadscrew::calibration::{Refusal, Requirements, RunPlan};
+use leadscrew::calibration::{Learner, Refusal, Requirements, RunPlan};
 use leadscrew::encoder_map::Direction;
 
 use crate::generator::{Memory, Shaft, Tick, learn, ticks};
@@ -16,6 +16,14 @@ fn counted_from(mut tick: Tick, first: i64) -> Tick {
         index.count = index.count.wrapping_add(first as u32);
     }
     tick
+}
+
+/// A learner that has one run of `shaft`, forward.
+fn after_a_run<'m>(memory: &'m mut Memory, shaft: &Shaft) -> Learner<'m> {
+    let mut learner = memory.learner();
+    let run = ticks(shaft, Motion::steady(50.0), 12, 5);
+    learn(&mut learner, PLAN, run).unwrap();
+    learner
 }
 
 #[test]
@@ -63,13 +71,7 @@ fn captures_whose_counts_begin_anywhere_are_aligned_in_any_order() {
 fn a_count_that_does_not_tell_the_state_of_a_and_b_is_refused() {
     let shaft = Shaft::small(1);
     let mut memory = Memory::new(shaft.edges());
-    let mut learner = memory.learner();
-    learn(
-        &mut learner,
-        PLAN,
-        ticks(&shaft, Motion::steady(50.0), 12, 5),
-    )
-    .unwrap();
+    let mut learner = after_a_run(&mut memory, &shaft);
     let run = ticks(&shaft, Motion::steady(37.0), 12, 6).map(|tick| counted_from(tick, 2));
     let refused = learn(&mut learner, PLAN, run).unwrap_err();
     assert!(
@@ -88,13 +90,7 @@ fn a_count_that_does_not_tell_the_state_of_a_and_b_is_refused() {
 fn the_lines_of_another_encoder_are_refused_and_the_runs_before_kept() {
     let shaft = Shaft::small(1);
     let mut memory = Memory::new(shaft.edges());
-    let mut learner = memory.learner();
-    learn(
-        &mut learner,
-        PLAN,
-        ticks(&shaft, Motion::steady(50.0), 12, 5),
-    )
-    .unwrap();
+    let mut learner = after_a_run(&mut memory, &shaft);
     let other = ticks(&Shaft::small(2), Motion::steady(37.0), 12, 6).collect::<Vec<_>>();
     let refused = learn(&mut learner, PLAN, other.into_iter()).unwrap_err();
     assert_eq!(refused, Refusal::PatternDiffers { run: 1 });
@@ -112,13 +108,7 @@ fn the_lines_of_another_encoder_are_refused_and_the_runs_before_kept() {
 fn an_index_that_moved_between_runs_is_refused() {
     let shaft = Shaft::small(1);
     let mut memory = Memory::new(shaft.edges());
-    let mut learner = memory.learner();
-    learn(
-        &mut learner,
-        PLAN,
-        ticks(&shaft, Motion::steady(50.0), 12, 5),
-    )
-    .unwrap();
+    let mut learner = after_a_run(&mut memory, &shaft);
     let run = ticks(&shaft, Motion::steady(37.0), 12, 6).map(|mut tick| {
         if let Some(index) = &mut tick.index {
             index.count = index.count.wrapping_add(8);

@@ -206,7 +206,7 @@ fn narrow(sum: i64, shift: u32) -> i32 {
 mod tests {
     use super::*;
 
-    /// A parabola, `ago` ticks before the window's middle, with [`PLACE_FRAC`] bits.
+    /// A parabola, so many ticks from the window's middle, with [`PLACE_FRAC`] bits.
     fn parabola(from_middle: f64) -> i32 {
         let exact = -17.0 + 75.0 * from_middle + 0.15 * from_middle * from_middle;
         libm::round(exact * 8192.0) as i32
