@@ -3,6 +3,8 @@
 //! The same shapes are filled by timer hardware, by the software decode of a recording and by the
 //! simulator; the core cannot tell them apart.
 
+use crate::units::Command;
+
 /// What the encoder inputs saw up to one sampling instant.
 ///
 /// All times are values of one free-running 32-bit timer that wraps; all counts are values of one
@@ -34,6 +36,8 @@ pub struct Capture<'a> {
     pub index: Option<Latch>,
     /// The probe input, if it triggered since the previous capture.
     pub probe: Option<Latch>,
+    /// The home switch, if it was actuated since the previous capture.
+    pub home: Option<Latch>,
 }
 
 /// Count and time that hardware latched at an event.
@@ -43,6 +47,54 @@ pub struct Latch {
     pub count: u32,
     /// The timer at the event.
     pub time: u32,
+}
+
+/// Levels of the board's discrete inputs at the sampling instant, true where the name says so whatever the
+/// polarity of the wire. The default is a machine at which all is well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lines {
+    /// The drive reports that it is ready to follow its command.
+    pub drive_ready: bool,
+    /// The drive reports a fault.
+    pub drive_fault: bool,
+    /// A line receiver of the encoder sees no valid differential signal.
+    pub encoder_lost: bool,
+    /// The same of the second encoder (spindle, master).
+    pub master_lost: bool,
+    /// The carriage is on the limit switch at the low end.
+    pub limit_low: bool,
+    /// The carriage is on the limit switch at the high end.
+    pub limit_high: bool,
+    /// The carriage is on the home switch.
+    pub home: bool,
+    /// The emergency-stop chain is open. It removes power by itself; this only tells of it.
+    pub emergency_stop: bool,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self {
+            drive_ready: true,
+            drive_fault: false,
+            encoder_lost: false,
+            master_lost: false,
+            limit_low: false,
+            limit_high: false,
+            home: false,
+            emergency_stop: false,
+        }
+    }
+}
+
+/// What an outer control or a second encoder gives as reference for the setpoint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reference<'a> {
+    /// Step/dir: the wrapping count of the hardware, net of direction.
+    pub steps: u32,
+    /// Gearing and threading: what the second encoder's inputs saw.
+    pub master: Option<Capture<'a>>,
+    /// Analog velocity command of a legacy control, raw fraction of its full scale.
+    pub analog: Command,
 }
 
 /// A source of captures.

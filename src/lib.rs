@@ -44,6 +44,7 @@
 pub mod axis;
 pub mod calibration;
 pub mod capture;
+pub mod compensation;
 pub mod controller;
 pub mod edges;
 pub mod encoder_map;
@@ -54,6 +55,7 @@ pub mod parameter_table;
 pub mod params;
 pub mod quadrature;
 pub mod setpoint;
+pub mod supervisor;
 pub mod tachogenerator;
 pub mod telemetry;
 pub mod uncertainty;

@@ -146,6 +146,20 @@ pub struct AxisConfig {
 }
 
 impl AxisParams {
+    /// All defaults, with `estimator`, at a control rate of 1 kHz and an edge timer of 84 MHz.
+    #[must_use]
+    pub fn new(estimator: EstimatorConfig) -> Self {
+        Self {
+            tick_hz: 1000.0,
+            timer_hz: 84e6,
+            encoder: EdgeErrors::default(),
+            motion: MotionParams::default(),
+            estimator,
+            controller: ControllerParams::default(),
+            output: OutputParams::default(),
+        }
+    }
+
     /// Validates and quantises.
     ///
     /// # Errors

@@ -29,7 +29,9 @@ pub struct Record {
     pub following_error: i32,
     /// Command, Q2.30 of full command.
     pub command: i32,
-    /// Bit 0 enabled, 1 limited high, 2 limited low, 3 limited by slew, 4 moving.
+    /// Bit 0 enabled, 1 limited high, 2 limited low, 3 limited by slew, 4 moving, 5 brake released; bits 8 to 15 the
+    /// [`State`](crate::supervisor::State), bits 16 to 23 the number of the [`Fault`](crate::supervisor::Fault), 0
+    /// for none.
     pub flags: u32,
 }
 
@@ -45,7 +47,10 @@ impl Record {
             | u32::from(limits.high) << 1
             | u32::from(limits.low) << 2
             | u32::from(limits.slew) << 3
-            | u32::from(outputs.moving) << 4;
+            | u32::from(outputs.moving) << 4
+            | u32::from(outputs.brake_released) << 5
+            | u32::from(outputs.state as u8) << 8
+            | u32::from(outputs.fault.map_or(0, |fault| fault as u8)) << 16;
         Self {
             tick: outputs.tick,
             count: outputs.count as u32,

@@ -101,6 +101,7 @@ proptest! {
                 overrun: leg.overrun,
                 index: wrapped(count, time, leg.index),
                 probe: wrapped(count, time, leg.probe),
+                home: None,
             };
             let seen = unwrapper.unwrap(&capture);
             prop_assert_eq!((seen.count, seen.sampled_at, seen.elapsed), (count, time, leg.elapsed));

@@ -73,10 +73,7 @@ impl<E: Encoder> Control for AxisControl<E> {
 
     fn step(&mut self, encoder: &E) -> Record {
         self.take_request();
-        let inputs = Inputs {
-            capture: encoder.capture(),
-            enable: self.enable,
-        };
+        let inputs = Inputs::of(encoder.capture(), self.enable);
         Record::new(self.axis.step(&inputs))
     }
 
@@ -97,7 +94,7 @@ mod tests {
     use leadscrew::controller::tuning::DriveModel;
     use leadscrew::estimator::EstimatorConfig;
     use leadscrew::hal::Capture;
-    use leadscrew::params::{AxisParams, MotionParams, OutputParams};
+    use leadscrew::params::AxisParams;
 
     use super::*;
 
@@ -118,14 +115,10 @@ mod tests {
             natural_period_s: 0.09,
             damping: 0.5,
         };
+        let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
         let params = AxisParams {
-            tick_hz: 1000.0,
-            timer_hz: 84e6,
-            encoder: leadscrew::uncertainty::EdgeErrors::default(),
-            motion: MotionParams::default(),
-            estimator: EstimatorConfig::by_name("simple").unwrap().unwrap(),
             controller: drive.place_poles(35.0).unwrap(),
-            output: OutputParams::default(),
+            ..AxisParams::new(estimator)
         };
         Axis::new(params.validate().unwrap())
     }

@@ -136,6 +136,7 @@ impl Encoder {
             overrun: self.ring.overrun(),
             index: self.index,
             probe: None,
+            home: None,
         }
     }
 

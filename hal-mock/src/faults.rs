@@ -53,6 +53,7 @@ struct Seen {
     overrun: bool,
     index: Option<Latch>,
     probe: Option<Latch>,
+    home: Option<Latch>,
 }
 
 impl FaultyEncoder {
@@ -94,6 +95,7 @@ impl FaultyEncoder {
             illegal: capture.illegal,
             overrun: capture.overrun,
             probe: capture.probe,
+            home: capture.home,
             ..Seen::default()
         };
         self.start_tick(before.wrapping_add(1));
@@ -281,6 +283,7 @@ impl hal::Encoder for FaultyEncoder {
             overrun: self.seen.overrun || self.ring.overrun(),
             index: self.seen.index,
             probe: self.seen.probe,
+            home: self.seen.home,
         }
     }
 }

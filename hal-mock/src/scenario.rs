@@ -7,11 +7,10 @@ use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::hal::Encoder;
-use leadscrew::params::{AxisConfig, AxisParams, MotionParams, OutputParams, ParamError};
+use leadscrew::params::{AxisConfig, AxisParams, MotionParams, ParamError};
 use leadscrew::setpoint::profile::{PlanError, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::telemetry::Record;
-use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{AxisScale, Position, checked};
 
 use crate::machine::{Machine, MachineParams};
@@ -80,16 +79,14 @@ impl MoveAndBack {
         Ok(AxisParams {
             tick_hz: self.tick_hz,
             timer_hz: machine.encoder.encoder.timer_hz,
-            encoder: EdgeErrors::default(),
             motion: MotionParams {
                 counts_per_mm: machine.mount.counts_per_mm,
                 full_command_feed_mm_per_min: machine.drive.full_command_feed_mm_per_min,
                 max_feed_mm_per_min: self.feed_mm_per_min,
                 ..MotionParams::default()
             },
-            estimator,
             controller: drive.place_poles(BANDWIDTH_RAD_PER_S)?,
-            output: OutputParams::default(),
+            ..AxisParams::new(estimator)
         })
     }
 }
@@ -311,10 +308,7 @@ impl<'m> Simulation<'m> {
         }
         self.machine
             .step(self.outputs.command, self.outputs.enabled);
-        let inputs = Inputs {
-            capture: self.machine.capture(),
-            enable: true,
-        };
+        let inputs = Inputs::of(self.machine.capture(), true);
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));
         self.tick += 1;

@@ -1,7 +1,7 @@
 //! The digest of a run: one number that is equal only if every tick had the same inputs and record.
 
 use leadscrew::axis::Inputs;
-use leadscrew::hal::Latch;
+use leadscrew::hal::{Capture, Latch, Lines, Reference};
 use leadscrew::telemetry::Record;
 
 /// Odd, and without pattern in its bits: Knuth's multiplier for congruential generators.
@@ -30,7 +30,54 @@ impl TraceDigest {
 
     /// Takes in one tick.
     pub fn update(&mut self, inputs: &Inputs<'_>, record: &Record) {
-        let capture = &inputs.capture;
+        self.capture(&inputs.capture);
+        let Lines {
+            drive_ready,
+            drive_fault,
+            encoder_lost,
+            master_lost,
+            limit_low,
+            limit_high,
+            home,
+            emergency_stop,
+        } = inputs.lines;
+        let levels = [
+            inputs.enable,
+            drive_ready,
+            drive_fault,
+            encoder_lost,
+            master_lost,
+            limit_low,
+            limit_high,
+            home,
+            emergency_stop,
+        ];
+        let levels = levels
+            .into_iter()
+            .fold(0, |word, level| word << 1 | u32::from(level));
+        self.word(levels << 16 | u32::from(inputs.missed_ticks));
+        let Reference {
+            steps,
+            master,
+            analog,
+        } = inputs.reference;
+        self.word(steps);
+        self.word(analog.to_bits().cast_unsigned());
+        self.option(
+            inputs
+                .readback
+                .map(|command| command.to_bits().cast_unsigned()),
+        );
+        self.word(u32::from(master.is_some()));
+        if let Some(master) = &master {
+            self.capture(master);
+        }
+        for &word in record.to_bytes().as_chunks().0 {
+            self.word(u32::from_le_bytes(word));
+        }
+    }
+
+    fn capture(&mut self, capture: &Capture<'_>) {
         self.word(capture.count);
         self.word(capture.sampled_at);
         self.option(capture.last_edge_at);
@@ -38,17 +85,10 @@ impl TraceDigest {
         for part in capture.edges {
             part.iter().for_each(|&time| self.word(time));
         }
-        self.word(
-            u32::from(capture.illegal)
-                | u32::from(capture.overrun) << 16
-                | u32::from(inputs.enable) << 17,
-        );
-        for latch in [capture.index, capture.probe] {
+        self.word(u32::from(capture.illegal) | u32::from(capture.overrun) << 16);
+        for latch in [capture.index, capture.probe, capture.home] {
             self.option(latch.map(|Latch { count, .. }| count));
             self.option(latch.map(|Latch { time, .. }| time));
-        }
-        for &word in record.to_bytes().as_chunks().0 {
-            self.word(u32::from_le_bytes(word));
         }
     }
 
@@ -73,15 +113,13 @@ impl TraceDigest {
 
 #[cfg(test)]
 mod tests {
-    use leadscrew::hal::Capture;
-
     use super::*;
 
     fn digest(capture: Capture<'_>, record: &Record) -> u64 {
         let mut digest = TraceDigest::new();
         let enable = true;
-        digest.update(&Inputs { capture, enable }, record);
-        digest.update(&Inputs { capture, enable }, &Record::default());
+        digest.update(&Inputs::of(capture, enable), record);
+        digest.update(&Inputs::of(capture, enable), &Record::default());
         digest.value()
     }
 

@@ -133,6 +133,7 @@ impl<'a> Sampler<'a> {
             overrun: false,
             index,
             probe: None,
+            home: None,
         })
     }
 

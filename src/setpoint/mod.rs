@@ -3,6 +3,7 @@
 //! [`profile`] plans a move outside the tick, [`trajectory`] evaluates the plan in the tick.
 
 pub mod profile;
+pub mod sources;
 pub mod trajectory;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};

@@ -129,8 +129,9 @@ impl Watched {
             overrun: words.overrun,
             index: latch(words.latches[0]),
             probe: latch(words.latches[1]),
+            home: None,
         };
-        let outputs = self.axis.step(&Inputs { capture, enable });
+        let outputs = self.axis.step(&Inputs::of(capture, enable));
         self.allowed = self.limit.max(self.allowed.saturating_sub(self.slew));
         assert!(outputs.command.abs() <= self.allowed, "{outputs:?}");
         if !enable {

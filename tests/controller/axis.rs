@@ -43,13 +43,11 @@ fn quiet_axis() -> Axis<'static> {
 }
 
 fn still(count: u32, enable: bool) -> Inputs<'static> {
-    Inputs {
-        capture: Capture {
-            count,
-            ..Capture::default()
-        },
-        enable,
-    }
+    let capture = Capture {
+        count,
+        ..Capture::default()
+    };
+    Inputs::of(capture, enable)
 }
 
 #[test]

@@ -4,9 +4,8 @@ use leadscrew::controller::config::Gains;
 use leadscrew::controller::tuning::DriveModel;
 use leadscrew::controller::{Config, Controller};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
-use leadscrew::params::{AxisParams, MotionParams, OutputParams};
+use leadscrew::params::AxisParams;
 use leadscrew::setpoint::Setpoint;
-use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
@@ -119,14 +118,11 @@ fn lathe_gains(tick_hz: f64) -> (AxisParams, Config) {
         natural_period_s: 0.09,
         damping: 0.5,
     };
+    let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
     let params = AxisParams {
         tick_hz,
-        timer_hz: 84e6,
-        encoder: EdgeErrors::default(),
-        motion: MotionParams::default(),
-        estimator: EstimatorConfig::by_name("exponential").unwrap().unwrap(),
         controller: drive.place_poles(35.0).unwrap(),
-        output: OutputParams::default(),
+        ..AxisParams::new(estimator)
     };
     (params, params.validate().unwrap().controller)
 }

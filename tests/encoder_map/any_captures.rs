@@ -84,6 +84,7 @@ proptest! {
                         time,
                     }),
                     probe: None,
+                    home: None,
                 };
                 let observation = unwrapper.unwrap(&capture);
                 reader.note(&observation);

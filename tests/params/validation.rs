@@ -7,22 +7,13 @@ use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
     AxisConfig, AxisParams, ControllerParams, MotionParams, OutputParams, ParamError,
 };
-use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::RangeError;
 use proptest::prelude::*;
 
 use crate::seeded::seeded;
 
 fn defaults() -> AxisParams {
-    AxisParams {
-        encoder: EdgeErrors::default(),
-        tick_hz: 1000.0,
-        timer_hz: 84e6,
-        motion: MotionParams::default(),
-        estimator: EstimatorConfig::by_name("exponential").unwrap().unwrap(),
-        controller: ControllerParams::default(),
-        output: OutputParams::default(),
-    }
+    AxisParams::new(EstimatorConfig::by_name("exponential").unwrap().unwrap())
 }
 
 #[track_caller]
@@ -257,7 +248,7 @@ proptest! {
             Ok(config) => {
                 let mut axis = Axis::new(config);
                 for count in [0, 0, 1, 7, 7] {
-                    axis.step(&Inputs { capture: Capture { count, ..Capture::default() }, enable: true });
+                    axis.step(&Inputs::of(Capture { count, ..Capture::default() }, true));
                 }
             }
             Err(error) => prop_assert!(error.to_string().contains(" is out of range: allowed "), "{}", error),

@@ -86,12 +86,12 @@ fn configured() -> Result<Axis<'static>, ParamError> {
             max_feed_mm_per_min: number(),
             ..MotionParams::default()
         },
-        estimator,
         controller: drive.place_poles(number())?,
         output: OutputParams {
             limit: number(),
             slew_per_s: number(),
         },
+        ..AxisParams::new(estimator)
     };
     params.validate().map(Axis::new)
 }
@@ -110,10 +110,7 @@ fn SysTick() {
         sampled_at: outside(),
         ..Capture::default()
     };
-    let record = Record::new(axis.step(&Inputs {
-        capture,
-        enable: outside() != 0,
-    }));
+    let record = Record::new(axis.step(&Inputs::of(capture, outside() != 0)));
     for word in record.to_bytes() {
         // SAFETY: `OUTSIDE` is a device register of the board; the image is not run.
         unsafe { write_volatile(OUTSIDE, u32::from(word)) };

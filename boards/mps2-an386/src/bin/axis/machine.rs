@@ -61,10 +61,7 @@ impl MachineState {
         self.applied = record;
         let digest = &mut self.digest;
         let _ = self.inputs.look(|machine| {
-            let inputs = Inputs {
-                capture: machine.capture(),
-                enable: record.drive().1,
-            };
+            let inputs = Inputs::of(machine.capture(), record.drive().1);
             digest.update(&inputs, &record);
         });
     }

@@ -72,23 +72,22 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
 fn inputs<'a>(dice: &mut Dice, times: &'a [u32; EDGES]) -> Inputs<'a> {
     let (older, newer) = times.split_at(dice.roll() as usize % EDGES);
     let newer = &newer[..dice.roll() as usize % (newer.len() + 1)];
-    Inputs {
-        capture: Capture {
-            count: if dice.one_in(2) {
-                dice.roll()
-            } else {
-                dice.roll() % 4096
-            },
-            sampled_at: dice.roll(),
-            last_edge_at: dice.one_in(2).then(|| dice.roll()),
-            edges: [older, newer],
-            illegal: dice.roll() as u16,
-            overrun: dice.one_in(2),
-            index: dice.latch(),
-            probe: dice.latch(),
+    let capture = Capture {
+        count: if dice.one_in(2) {
+            dice.roll()
+        } else {
+            dice.roll() % 4096
         },
-        enable: !dice.one_in(32),
-    }
+        sampled_at: dice.roll(),
+        last_edge_at: dice.one_in(2).then(|| dice.roll()),
+        edges: [older, newer],
+        illegal: dice.roll() as u16,
+        overrun: dice.one_in(2),
+        index: dice.latch(),
+        probe: dice.latch(),
+        home: dice.latch(),
+    };
+    Inputs::of(capture, !dice.one_in(32))
 }
 
 /// What an edge costs beyond the tick: nothing in the step, as the papers' estimators do not look at edges
@@ -113,21 +112,8 @@ fn edge(counter: &mut Counter) -> Result<(), ScenarioError> {
             last_edge_at: Some(tick),
             ..bare
         };
-        let dear = counter.count(|| {
-            with.step(&Inputs {
-                capture: full,
-                enable: true,
-            })
-            .command
-        });
-        let cheap = counter.count(|| {
-            without
-                .step(&Inputs {
-                    capture: bare,
-                    enable: true,
-                })
-                .command
-        });
+        let dear = counter.count(|| with.step(&Inputs::of(full, true)).command);
+        let cheap = counter.count(|| without.step(&Inputs::of(bare, true)).command);
         edges.push(dear.saturating_sub(cheap));
         let (a, b) = (tick % 4 < 2, tick.wrapping_add(1) % 4 < 2);
         decoded.push(counter.count(|| decoder.step(a, b)));

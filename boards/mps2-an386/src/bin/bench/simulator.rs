@@ -98,10 +98,7 @@ fn there_and_back(
             let _ = axis.queue(&next.profile, next.start);
         }
         let step = counter.count(|| machine.step(applied.command, applied.enabled));
-        let inputs = Inputs {
-            capture: machine.capture(),
-            enable: true,
-        };
+        let inputs = Inputs::of(machine.capture(), true);
         applied = *axis.step(&inputs);
         let record = Record::new(&applied);
         let hashed = counter.count(|| digest.update(&inputs, &record));

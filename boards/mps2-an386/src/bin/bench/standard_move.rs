@@ -76,10 +76,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
         }
         machine.step(applied.command, applied.enabled);
         let capture = machine.capture();
-        let inputs = Inputs {
-            capture,
-            enable: true,
-        };
+        let inputs = Inputs::of(capture, true);
         let (mut record, mut queued) = (0, 0);
         let mut steps = [0; ESTIMATORS];
         for (index, axis) in axes.iter_mut().flatten().enumerate() {

@@ -1,50 +1,23 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod io;
+
+pub use io::{Inputs, Outputs};
+
 use crate::capture::{CaptureHealth, Unwrapper};
-use crate::controller::{Controller, FollowingError};
+use crate::compensation::Compensation;
+use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
-use crate::estimator::{Estimate, Estimator, Evidence};
-use crate::hal::Capture;
-use crate::output::{ActiveLimits, Output};
+use crate::estimator::{Estimator, Evidence};
+use crate::output::Output;
 use crate::params::AxisConfig;
-use crate::setpoint::Setpoint;
 use crate::setpoint::profile::Profile;
-use crate::setpoint::trajectory::{QueueError, Trajectory};
-use crate::units::{Command, Position};
-
-/// What a tick takes in.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// What the encoder inputs saw.
-    pub capture: Capture<'a>,
-    /// The axis is to be under control.
-    pub enable: bool,
-}
-
-/// What a tick gives.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Outputs {
-    /// Number of the tick, from 0; wraps.
-    pub tick: u32,
-    /// Count without wrap.
-    pub count: i64,
-    /// Command to the drive; zero while not enabled.
-    pub command: Command,
-    /// The drive is to be enabled.
-    pub enabled: bool,
-    /// A move runs.
-    pub moving: bool,
-    /// Limits that hold the command back.
-    pub limits: ActiveLimits,
-    /// Setpoint less measured position, d.
-    pub following_error: FollowingError,
-    /// Where the axis is.
-    pub estimate: Estimate,
-    /// Where it should be.
-    pub setpoint: Setpoint,
-}
+use crate::setpoint::sources::Sources;
+use crate::setpoint::trajectory::QueueError;
+use crate::supervisor::{Permit, Review, Situation, Supervisor};
+use crate::units::Position;
 
 /// One axis; `'m` is how long its encoder map lives.
 #[derive(Clone, Debug)]
@@ -52,7 +25,9 @@ pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
     estimator: Estimator,
-    trajectory: Trajectory,
+    supervisor: Supervisor,
+    sources: Sources,
+    compensation: Compensation,
     controller: Controller,
     output: Output,
     config: AxisConfig,
@@ -70,7 +45,9 @@ impl<'m> Axis<'m> {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
             estimator: Estimator::new(config.estimator),
-            trajectory: Trajectory::new(),
+            supervisor: Supervisor::new(),
+            sources: Sources::new(),
+            compensation: Compensation::default(),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             config,
@@ -86,42 +63,59 @@ impl<'m> Axis<'m> {
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
         let position = observation.position();
-        if !(inputs.enable && self.outputs.enabled) {
-            self.begin(position);
-        }
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
         let was_enabled = outputs.enabled;
         outputs.tick = tick;
         outputs.count = observation.count;
-        outputs.enabled = inputs.enable;
         let command = was_enabled.then(|| self.output.command());
         outputs.estimate = self.estimator.update(&Evidence {
             observation: &observation,
             edges: &self.edges,
             command,
         });
-        outputs.setpoint = self.trajectory.step(tick);
-        outputs.moving = self.trajectory.is_moving();
+
+        let permit = self.supervisor.permit(&Situation {
+            enable: inputs.enable,
+            lines: &inputs.lines,
+        });
+        if !(was_enabled && permit > Permit::ZeroVolts) {
+            self.begin(position);
+        }
+        let outputs = &mut self.outputs;
+        let commanded = self.sources.step(tick, &inputs.reference, permit);
+        outputs.moving = self.sources.is_moving();
+        outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
         let demand = self
             .controller
             .step(&outputs.setpoint, position, &outputs.estimate, active);
         outputs.following_error = demand.following_error;
-        outputs.command = if inputs.enable {
+
+        let permit = self.supervisor.review(&Review {
+            permit,
+            moving: outputs.moving,
+            trouble: self.sources.trouble(),
+        });
+        outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
             self.output.off()
         };
         outputs.limits = self.output.active_limits();
+        outputs.enabled = permit > Permit::Off;
+        outputs.brake_released = outputs.enabled;
+        outputs.state = self.supervisor.state();
+        outputs.fault = self.supervisor.fault();
+        outputs.reported = position;
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.trajectory.hold(position);
+        self.sources.hold(position);
         self.controller.reset();
     }
 
@@ -133,7 +127,8 @@ impl<'m> Axis<'m> {
         if !self.outputs.enabled {
             return Err(QueueError::Disabled);
         }
-        self.trajectory
+        self.sources
+            .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
