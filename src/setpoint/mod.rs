@@ -3,7 +3,9 @@
 //! [`profile`] plans a move outside the tick, [`trajectory`] evaluates the plan in the tick.
 
 pub mod profile;
+pub mod ratio;
 pub mod sources;
+pub mod step_dir;
 pub mod trajectory;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};

@@ -1,0 +1,6 @@
+//! Sources of setpoints other than planned moves: pulses, analog command, gearing, threads.
+
+mod ratio;
+#[path = "../support/seeded.rs"]
+mod seeded;
+mod step_dir;
