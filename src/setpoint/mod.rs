@@ -4,6 +4,7 @@
 //! [`follower`] goes to a velocity within limits of acceleration and jerk without a plan: for stops and for sources
 //! that others move. [`sources`] chooses.
 
+pub mod analog;
 pub mod follower;
 pub mod profile;
 pub mod ratio;
