@@ -15,6 +15,8 @@ pub enum ScenarioError {
     Plan(PlanError),
     /// The axis did not take a move.
     Queue(QueueError),
+    /// There is no estimator of the name.
+    NoSuchEstimator,
 }
 
 impl fmt::Display for ScenarioError {
@@ -23,6 +25,7 @@ impl fmt::Display for ScenarioError {
             Self::Param(error) => error.fmt(f),
             Self::Plan(error) => error.fmt(f),
             Self::Queue(error) => error.fmt(f),
+            Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
         }
     }
 }
