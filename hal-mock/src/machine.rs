@@ -148,6 +148,14 @@ impl Machine {
         self.encoder.advance(&self.seen);
     }
 
+    /// Lets the encoder's coupling lose the share `lost` of its motion from the next step on, 1 for all of it.
+    pub fn set_slip(&mut self, lost: f64) {
+        match &mut self.slip {
+            Some(slip) => slip.set(lost),
+            None => self.slip = Slip::new(lost, 0.0),
+        }
+    }
+
     /// The encoder, for where its edges really lie.
     #[must_use]
     pub const fn encoder(&self) -> &Encoder {
