@@ -1,5 +1,9 @@
 //! Parameters in physical units, and their validation into the quantised configuration of the tick.
 
+mod sections;
+
+pub use sections::SectionVisitor;
+
 use core::fmt;
 
 use crate::controller::params::LawParams;
