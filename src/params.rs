@@ -10,6 +10,7 @@ use crate::controller::params::LawParams;
 pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
+use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
@@ -33,6 +34,10 @@ pub struct AxisParams {
     pub motion: MotionParams,
     /// Estimator; its parameters are in ticks.
     pub estimator: EstimatorConfig,
+    /// A second one for paths of its own; it costs only where it is given.
+    pub second_estimator: Option<EstimatorConfig>,
+    /// Which of them serves which path.
+    pub paths: Paths,
     /// Control law.
     pub controller: ControllerParams,
     /// Filters of its feedback part.
@@ -114,8 +119,10 @@ impl core::error::Error for ParamError {}
 pub struct AxisConfig {
     /// Edge timer and noise of the edges.
     pub edges: EdgeConfig,
-    /// Estimator.
-    pub estimator: EstimatorConfig,
+    /// Counts and ticks.
+    pub scale: AxisScale,
+    /// Estimators and their paths.
+    pub estimators: EstimatorsConfig,
     /// Control law.
     pub controller: controller::Config,
     /// Limits of the output.
@@ -134,6 +141,8 @@ impl AxisParams {
             encoder: EdgeErrors::default(),
             motion: MotionParams::default(),
             estimator,
+            second_estimator: None,
+            paths: Paths::default(),
             controller: ControllerParams::default(),
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
@@ -151,16 +160,18 @@ impl AxisParams {
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
+        let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
         Ok(AxisConfig {
             edges,
-            estimator: self.estimator,
+            scale,
+            estimators,
             limits: self.motion.limits(scale)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
                 friction: &self.friction,
             }
-            .quantise(scale, full_velocity, self.estimator.delay())?,
+            .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
         })
     }
