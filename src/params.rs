@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::compensation::CompensationParams;
 use crate::controller::config::Gains;
 use crate::edges::EdgeConfig;
 use crate::estimator::{Delay, EstimatorConfig};
@@ -10,7 +11,7 @@ use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -32,6 +33,8 @@ pub struct AxisParams {
     pub controller: ControllerParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
 }
 
 parameter_table! {
@@ -141,8 +144,10 @@ pub struct AxisConfig {
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
 }
 
 impl AxisParams {
@@ -157,6 +162,7 @@ impl AxisParams {
             estimator,
             controller: ControllerParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
         }
     }
 
@@ -170,10 +176,13 @@ impl AxisParams {
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
         Ok(AxisConfig {
             edges,
             estimator: self.estimator,
-            limits: self.motion.limits(scale)?,
+            limits: compensation.setpoint_limits(&limits)?,
+            compensation,
             controller: self
                 .controller
                 .quantise(scale, full_velocity, self.estimator.delay())?,
