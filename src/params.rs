@@ -6,6 +6,7 @@ pub use sections::SectionVisitor;
 
 use core::fmt;
 
+use crate::compensation::CompensationParams;
 use crate::controller::params::LawParams;
 pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
@@ -16,7 +17,7 @@ use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -46,6 +47,8 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
 }
 
 parameter_table! {
@@ -127,8 +130,10 @@ pub struct AxisConfig {
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
 }
 
 impl AxisParams {
@@ -147,6 +152,7 @@ impl AxisParams {
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
         }
     }
 
@@ -161,11 +167,14 @@ impl AxisParams {
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: self.motion.limits(scale)?,
+            limits: compensation.setpoint_limits(&limits)?,
+            compensation,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,

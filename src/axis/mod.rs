@@ -7,7 +7,7 @@ pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 
 use crate::capture::{CaptureHealth, Unwrapper};
-use crate::compensation::Compensation;
+use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
@@ -22,7 +22,7 @@ use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{Permit, Review, Situation, Supervisor};
 use crate::units::Position;
 
-/// One axis; `'m` is how long its encoder map lives.
+/// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
@@ -30,7 +30,7 @@ pub struct Axis<'m> {
     estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
-    compensation: Compensation,
+    compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
     config: AxisConfig,
@@ -50,7 +50,7 @@ impl<'m> Axis<'m> {
             estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(),
             sources: Sources::new(&config.limits),
-            compensation: Compensation::default(),
+            compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             config,
@@ -116,14 +116,14 @@ impl<'m> Axis<'m> {
         outputs.brake_released = outputs.enabled;
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
-        outputs.reported = position;
+        outputs.reported = self.compensation.reported(position);
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.sources.hold(position);
+        self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
     }
 
@@ -159,6 +159,7 @@ impl<'m> Axis<'m> {
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.sources.reconfigure(&config.limits);
+        self.compensation.reconfigure(config.compensation);
         self.config = config;
         Ok(())
     }
@@ -167,6 +168,27 @@ impl<'m> Axis<'m> {
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
+    }
+
+    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
+    /// soon as an origin is known.
+    ///
+    /// # Errors
+    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
+    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
+        self.compensation.set_table(table)
+    }
+
+    /// The compensation of the screw, and the origin that it counts from.
+    #[must_use]
+    pub const fn compensation(&self) -> &Compensation<'m> {
+        &self.compensation
+    }
+
+    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
+    /// whose place is known without homing. The loop goes on as it was.
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.

@@ -1,6 +1,7 @@
 //! The whole step: enabling, moves, and a change of configuration.
 
 use leadscrew::axis::{Axis, Inputs};
+use leadscrew::compensation::CompensationParams;
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
 use leadscrew::edges::EdgeConfig;
@@ -18,6 +19,7 @@ use crate::signals::config as controller_config;
 
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
+    let limits = Limits::new(1000.0, 100.0, 3.0).unwrap();
     AxisConfig {
         edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
         scale: AxisScale::new(1000.0, 1000.0).unwrap(),
@@ -28,7 +30,10 @@ pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> Ax
         ),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
-        limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        limits,
+        compensation: CompensationParams::default()
+            .quantise(AxisScale::new(1000.0, 1000.0).unwrap(), &limits)
+            .unwrap(),
     }
 }
 
