@@ -46,7 +46,7 @@ impl<'m> Axis<'m> {
             edges: EdgeReader::new(config.edges),
             estimator: Estimator::new(config.estimator),
             supervisor: Supervisor::new(),
-            sources: Sources::new(),
+            sources: Sources::new(&config.limits),
             compensation: Compensation::default(),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
@@ -143,6 +143,7 @@ impl<'m> Axis<'m> {
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
+        self.sources.reconfigure(&config.limits);
         self.config = config;
     }
 
