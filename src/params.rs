@@ -15,6 +15,7 @@ use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
 use crate::{compensation, controller, output};
@@ -49,6 +50,8 @@ pub struct AxisParams {
     pub output: OutputParams,
     /// Compensation of the screw.
     pub compensation: CompensationParams,
+    /// What the axis is watched for.
+    pub supervisor: SupervisorParams,
 }
 
 parameter_table! {
@@ -134,6 +137,8 @@ pub struct AxisConfig {
     pub limits: Limits,
     /// Compensation of the screw.
     pub compensation: compensation::Config,
+    /// What the axis is watched for.
+    pub supervisor: supervisor::Config,
 }
 
 impl AxisParams {
@@ -153,6 +158,7 @@ impl AxisParams {
             friction: FrictionParams::default(),
             output: OutputParams::default(),
             compensation: CompensationParams::default(),
+            supervisor: SupervisorParams::default(),
         }
     }
 
@@ -182,6 +188,11 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            supervisor: self.supervisor.quantise(
+                scale,
+                full_velocity,
+                scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+            )?,
         })
     }
 }

@@ -20,5 +20,6 @@ impl AxisParams {
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);
         visitor.section("compensation", &mut self.compensation);
+        visitor.section("supervisor", &mut self.supervisor);
     }
 }
