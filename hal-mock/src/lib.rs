@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 pub mod arc;
+pub mod board;
 pub mod carriage;
 pub mod disc;
 pub mod drive;
