@@ -6,10 +6,14 @@
 
 pub mod analog;
 pub mod follower;
+pub mod gearing;
+pub mod master;
 pub mod profile;
 pub mod ratio;
+pub mod run_up;
 pub mod sources;
 pub mod step_dir;
+pub mod thread;
 pub mod trajectory;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};
