@@ -6,12 +6,13 @@ use crate::compensation::CompensationParams;
 use crate::controller::config::Gains;
 use crate::edges::EdgeConfig;
 use crate::estimator::{Delay, EstimatorConfig};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{compensation, controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -35,6 +36,8 @@ pub struct AxisParams {
     pub output: OutputParams,
     /// Compensation of the screw.
     pub compensation: CompensationParams,
+    /// Homing.
+    pub homing: HomingParams,
 }
 
 parameter_table! {
@@ -148,6 +151,8 @@ pub struct AxisConfig {
     pub limits: Limits,
     /// Compensation of the screw.
     pub compensation: compensation::Config,
+    /// Homing.
+    pub homing: homing::Config,
 }
 
 impl AxisParams {
@@ -163,6 +168,7 @@ impl AxisParams {
             controller: ControllerParams::default(),
             output: OutputParams::default(),
             compensation: CompensationParams::default(),
+            homing: HomingParams::default(),
         }
     }
 
@@ -178,11 +184,13 @@ impl AxisParams {
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         let limits = self.motion.limits(scale)?;
         let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
             estimator: self.estimator,
-            limits: compensation.setpoint_limits(&limits)?,
+            limits,
             compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: self
                 .controller
                 .quantise(scale, full_velocity, self.estimator.delay())?,

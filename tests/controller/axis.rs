@@ -7,6 +7,7 @@ use leadscrew::controller::config::Gains;
 use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Capture;
+use leadscrew::homing::HomingParams;
 use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
@@ -19,6 +20,7 @@ use crate::signals::config as controller_config;
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
     let limits = Limits::new(1000.0, 100.0, 3.0).unwrap();
+    let scale = AxisScale::new(1000.0, 1000.0).unwrap();
     AxisConfig {
         edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
         estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
@@ -28,8 +30,9 @@ pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> Ax
         output: output::Config::new(limit, slew).unwrap(),
         limits,
         compensation: CompensationParams::default()
-            .quantise(AxisScale::new(1000.0, 1000.0).unwrap(), &limits)
+            .quantise(scale, &limits)
             .unwrap(),
+        homing: HomingParams::default().quantise(scale, &limits).unwrap(),
     }
 }
 
