@@ -12,13 +12,14 @@ pub use crate::controller::params::{ControllerParams, FilterParams, FrictionPara
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{compensation, controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -52,6 +53,8 @@ pub struct AxisParams {
     pub compensation: CompensationParams,
     /// What the axis is watched for.
     pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
 }
 
 parameter_table! {
@@ -139,6 +142,8 @@ pub struct AxisConfig {
     pub compensation: compensation::Config,
     /// What the axis is watched for.
     pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
 }
 
 impl AxisParams {
@@ -159,6 +164,7 @@ impl AxisParams {
             output: OutputParams::default(),
             compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
         }
     }
 
@@ -175,12 +181,14 @@ impl AxisParams {
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
         let limits = self.motion.limits(scale)?;
         let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: compensation.setpoint_limits(&limits)?,
+            limits,
             compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
