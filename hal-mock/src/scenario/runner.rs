@@ -83,6 +83,7 @@ impl<'s> Runner<'s> {
         let inputs = self.world.inputs(self.operator.enables());
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));
+        self.operator.look(&self.outputs);
         self.tick += 1;
         Some(&self.outputs)
     }
