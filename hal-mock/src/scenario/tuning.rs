@@ -1,9 +1,9 @@
 //! An axis tuned on what is known of a machine.
 
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::params::{AxisParams, MotionParams, ParamError};
+use leadscrew::tuning::DriveModel;
 use leadscrew::units::AxisScale;
 
 use crate::machine::MachineParams;
@@ -42,10 +42,7 @@ pub fn tuned_axis(
     bandwidth_rad_per_s: f64,
     estimator: EstimatorConfig,
 ) -> Result<AxisParams, ParamError> {
-    let drive = DriveModel {
-        natural_period_s: machine.drive.natural_period_s,
-        damping: machine.drive.damping,
-    };
+    let drive = DriveModel::second_order(machine.drive.natural_period_s, machine.drive.damping);
     Ok(AxisParams {
         tick_hz,
         timer_hz: machine.encoder.encoder.timer_hz,
