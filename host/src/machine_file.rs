@@ -29,15 +29,18 @@ fn parse(text: &str) -> Result<MachineParams, Complaint> {
     let document = toml_file::document(text)?;
     let document = document.get_ref();
     let mut machine = base(document)?.params();
-    fill_sections(&mut machine, document, &["base"])?;
+    fill_sections(document, MACHINE_SECTIONS, &["base"], |section, fill| {
+        visit_machine(&mut machine, section, fill)
+    })?;
     Ok(machine)
 }
 
-/// Sets what the sections of `document` say; keys in `others` are not theirs.
+/// Sets what `document` says in `sections`, each by `visit`; keys in `others` are read elsewhere.
 pub(crate) fn fill_sections(
-    machine: &mut MachineParams,
     document: &DeTable<'_>,
+    sections: &[&str],
     others: &[&str],
+    mut visit: impl FnMut(&str, Fill<'_>) -> Option<Result<(), Complaint>>,
 ) -> Result<(), Complaint> {
     for (key, value) in document {
         let name: &str = key.get_ref();
@@ -45,14 +48,14 @@ pub(crate) fn fill_sections(
             continue;
         }
         let DeValue::Table(table) = value.get_ref() else {
-            return Err(Complaint::new(key.span(), stray_key(name)));
+            return Err(Complaint::new(key.span(), stray_key(name, sections)));
         };
         let fill = Fill {
             section: name,
             table,
         };
-        visit_machine(machine, name, fill).unwrap_or_else(|| {
-            let hint = suggestion(name, MACHINE_SECTIONS.iter().copied());
+        visit(name, fill).unwrap_or_else(|| {
+            let hint = suggestion(name, sections.iter().copied());
             Err(Complaint::new(
                 key.span(),
                 format!("unknown section [{name}]{hint}"),
@@ -63,7 +66,7 @@ pub(crate) fn fill_sections(
 }
 
 /// Sets the keys of a section.
-struct Fill<'a> {
+pub(crate) struct Fill<'a> {
     section: &'a str,
     table: &'a DeTable<'a>,
 }
@@ -77,8 +80,7 @@ impl Visitor for Fill<'_> {
 }
 
 /// What to say of a key that stands above the sections.
-fn stray_key(name: &str) -> String {
-    let known = MACHINE_SECTIONS;
+fn stray_key(name: &str, known: &[&str]) -> String {
     if known.contains(&name) {
         format!("`{name}` is a section: write [{name}] and its keys below it")
     } else if strsim::jaro(name, "base") > 0.8 {

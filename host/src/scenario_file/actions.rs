@@ -24,7 +24,10 @@ pub struct Spec {
 #[derive(Clone, Copy, Debug)]
 enum Make {
     Ask(fn(&[f64]) -> Ask),
+    /// Lasts for a time.
     Trouble(fn(&[f64]) -> Trouble),
+    /// Comes once.
+    Event(fn(&[f64]) -> Trouble),
 }
 
 impl Spec {
@@ -58,9 +61,24 @@ impl Spec {
         }
     }
 
-    /// True for something that goes wrong, for a time; false for something that is asked of the axis.
+    const fn event(
+        name: &'static str,
+        what: &'static str,
+        keys: &'static [Key],
+        make: fn(&[f64]) -> Trouble,
+    ) -> Self {
+        let make = Make::Event(make);
+        Self {
+            name,
+            what,
+            keys,
+            make,
+        }
+    }
+
+    /// True for what lasts for a time.
     #[must_use]
-    pub const fn is_trouble(&self) -> bool {
+    pub const fn lasts(&self) -> bool {
         matches!(self.make, Make::Trouble(_))
     }
 }
@@ -241,6 +259,74 @@ pub const ACTIONS: &[Spec] = &[
         &[number("share", "1", 0.0, 1.0, "the share; 1 for a broken coupling").or(1.0)],
         |values| Trouble::CouplingSlip { share: values[0] },
     ),
+    Spec::trouble(
+        "signal-loss",
+        "the encoder's cable is cut: no edge comes, and its line receiver tells of it",
+        &[],
+        |_| Trouble::SignalLoss,
+    ),
+    Spec::trouble(
+        "encoder-reversed",
+        "a pair of the encoder's wires is exchanged: it counts the other way",
+        &[],
+        |_| Trouble::EncoderReversed,
+    ),
+    Spec::trouble(
+        "drive-reversed",
+        "the command's wires are exchanged",
+        &[],
+        |_| Trouble::DriveReversed,
+    ),
+    Spec::trouble(
+        "drive-fault",
+        "the drive reports a fault, and brakes to a stop",
+        &[],
+        |_| Trouble::DriveFault,
+    ),
+    Spec::trouble(
+        "drive-not-ready",
+        "the drive is enabled in vain, or ceases to be ready and brakes to a stop",
+        &[],
+        |_| Trouble::DriveNotReady,
+    ),
+    Spec::trouble(
+        "converter-stuck",
+        "the output converter puts out the same whatever it is told",
+        &[number("output", "of full command", -1.0, 1.0, "what")],
+        |values| Trouble::ConverterStuck { output: values[0] },
+    ),
+    Spec::trouble(
+        "converter-offset",
+        "the output converter puts out more than it is told",
+        &[number(
+            "offset",
+            "of full command",
+            -1.0,
+            1.0,
+            "by how much",
+        )],
+        |values| Trouble::ConverterOffset { offset: values[0] },
+    ),
+    Spec::trouble(
+        "emergency-stop",
+        "the emergency-stop chain is open; power stays on for the stop",
+        &[],
+        |_| Trouble::EmergencyStop,
+    ),
+    Spec::trouble(
+        "master-lost",
+        "the line receiver of the second encoder sees no signal",
+        &[],
+        |_| Trouble::MasterLost,
+    ),
+    Spec::event(
+        "missed-ticks",
+        "the axis misses ticks; the machine goes on under the last command",
+        &[whole("ticks", 1, 1000, "how many")],
+        |values| Trouble::MissedTicks {
+            ticks: values[0] as u16,
+        },
+    ),
 ];
 
 /// Reads one `[[at]]`.
@@ -263,7 +349,7 @@ pub(super) fn read(table: &DeTable<'_>, place: Range<usize>) -> Result<Timed, Co
     let keys: Vec<&Key> = [&TIME]
         .into_iter()
         .chain(spec.keys)
-        .chain(spec.is_trouble().then_some(&FOR))
+        .chain(spec.lasts().then_some(&FOR))
         .collect();
     let of = format!("action \"{}\"", spec.name);
     let values = read_all(table, &keys, &["action"], &of, place)?;
@@ -273,6 +359,10 @@ pub(super) fn read(table: &DeTable<'_>, place: Range<usize>) -> Result<Timed, Co
         Make::Trouble(make) => Action::Trouble {
             trouble: make(own),
             for_s: values[values.len() - 1],
+        },
+        Make::Event(make) => Action::Trouble {
+            trouble: make(own),
+            for_s: 0.0,
         },
     };
     Ok(Timed {

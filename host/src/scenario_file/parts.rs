@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::{EstimatorConfig, difference};
 use leadscrew::parameter_table::ParameterTable;
-use leadscrew::params::AxisParams;
-use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew::params::{AxisParams, SectionVisitor};
 use leadscrew_hal_mock::scenario::{
-    AXIS_SECTIONS, BANDWIDTH_RAD_PER_S, Base, MACHINE_SECTIONS, Setting, Visitor, visit_axis,
-    visit_machine,
+    BANDWIDTH_RAD_PER_S, BOARD_SECTIONS, Base, MACHINE_SECTIONS, Plant, Setting, Visitor,
+    visit_axis, visit_plant,
 };
 use toml::de::{DeTable, DeValue};
 
@@ -29,8 +28,8 @@ impl MachinePart {
             return Ok(Self::default());
         };
         let base = machine_file::base(table)?;
-        let mut machine = match table.get("file") {
-            None => base.params(),
+        let mut plant = match table.get("file") {
+            None => Plant::from(base.params()),
             Some(value) => {
                 let Some(name) = value
                     .get_ref()
@@ -43,25 +42,32 @@ impl MachinePart {
                     ));
                 };
                 let path = scenario.parent().unwrap_or(Path::new("")).join(name);
-                machine_file::read(&path)
-                    .map_err(|error| Complaint::new(value.span(), error.to_string()))?
+                let read = machine_file::read(&path);
+                Plant::from(read.map_err(|error| Complaint::new(value.span(), error.to_string()))?)
             }
         };
-        machine_file::fill_sections(&mut machine, table, &["base", "file"])?;
+        let sections = plant_sections();
+        machine_file::fill_sections(table, &sections, &["base", "file"], |section, fill| {
+            visit_plant(&mut plant, section, fill)
+        })?;
         Ok(Self {
             base,
-            settings: differences(base, &mut machine),
+            settings: differences(base, &mut plant),
         })
     }
 }
 
-/// What makes `machine` of `base`.
-fn differences(base: Base, machine: &mut MachineParams) -> Vec<Setting> {
-    let mut params = base.params();
+fn plant_sections() -> Vec<&'static str> {
+    [MACHINE_SECTIONS, BOARD_SECTIONS].concat()
+}
+
+/// What makes `plant` of `base`.
+fn differences(base: Base, plant: &mut Plant) -> Vec<Setting> {
+    let mut known = Plant::from(base.params());
     let mut settings = Vec::new();
-    for section in MACHINE_SECTIONS {
-        let values = visit_machine(machine, section, Values).unwrap_or_default();
-        let known = visit_machine(&mut params, section, Values).unwrap_or_default();
+    for section in plant_sections() {
+        let values = visit_plant(plant, section, Values).unwrap_or_default();
+        let known = visit_plant(&mut known, section, Values).unwrap_or_default();
         let changed = values
             .iter()
             .zip(known)
@@ -122,11 +128,13 @@ impl AxisPart {
         let empty = DeTable::new();
         let table = table.unwrap_or(&empty);
         let keys = [&TICK_HZ, &BANDWIDTH];
-        let values = read_all(table, &keys, AXIS_SECTIONS, "[axis]", 0..0)?;
+        let mut axis = any_axis();
+        let sections = Sections::of(&mut axis);
+        let values = read_all(table, &keys, &sections, "[axis]", 0..0)?;
         let mut settings = Vec::new();
         for (key, value) in table {
             let name: &str = key.get_ref();
-            let Some(section) = AXIS_SECTIONS.iter().find(|section| **section == name) else {
+            let Some(&section) = sections.iter().find(|section| **section == name) else {
                 continue;
             };
             let DeValue::Table(table) = value.get_ref() else {
@@ -135,9 +143,6 @@ impl AxisPart {
                     format!("`{name}` is a section: write [axis.{name}] and its keys below it"),
                 ));
             };
-            let mut axis = AxisParams::new(EstimatorConfig::Difference(
-                leadscrew::estimator::difference::Config,
-            ));
             let fill = FillSetting { section, table };
             if let Some(read) = visit_axis(&mut axis, section, fill) {
                 settings.extend(read?);
@@ -148,6 +153,29 @@ impl AxisPart {
             bandwidth_rad_per_s: values[1],
             settings,
         })
+    }
+}
+
+/// An axis whose tables are looked at, not used.
+fn any_axis() -> AxisParams {
+    AxisParams::new(EstimatorConfig::Difference(difference::Config))
+}
+
+/// Names of the sections of an axis.
+#[derive(Default)]
+struct Sections(Vec<&'static str>);
+
+impl Sections {
+    fn of(axis: &mut AxisParams) -> Vec<&'static str> {
+        let mut sections = Self::default();
+        axis.visit_sections(&mut sections);
+        sections.0
+    }
+}
+
+impl SectionVisitor for Sections {
+    fn section<T: ParameterTable>(&mut self, name: &'static str, _: &mut T) {
+        self.0.push(name);
     }
 }
 

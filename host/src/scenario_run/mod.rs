@@ -23,7 +23,7 @@ use crate::progress::Progress;
 pub struct Tick {
     /// What the axis put out.
     pub outputs: Outputs,
-    /// The encoder's shaft, as it really moves.
+    /// The screw, as it really moves: what the encoder says if nothing is wrong with it.
     pub shaft: State,
     /// Carriage, d.
     pub carriage: f64,
@@ -70,7 +70,7 @@ pub fn run(scenario: &Scenario<'_>) -> Result<Record, RunError> {
 }
 
 fn learn(scenario: &Scenario<'_>) -> Result<Vec<u8>, CalibrationError> {
-    let model: EncoderModel = scenario.machine_params().encoder;
+    let model: EncoderModel = scenario.plant().machine.encoder;
     let procedure = Procedure {
         tick_hz: scenario.tick_hz,
         ..Procedure::default()
@@ -86,11 +86,11 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
     let mut actions = Vec::new();
     while let Some(outputs) = runner.step(|happening| actions.push(happening)) {
         let outputs = *outputs;
-        let truth = runner.world.machine.truth();
+        let machine = &runner.world.board.machine;
         ticks.push(Tick {
             outputs,
-            shaft: truth.shaft,
-            carriage: truth.carriage.position,
+            shaft: machine.screw(),
+            carriage: machine.truth().carriage.position,
         });
         progress.step();
     }
@@ -99,6 +99,6 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
         actions,
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
-        counts_per_mm: scenario.machine_params().mount.counts_per_mm,
+        counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
     })
 }
