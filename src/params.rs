@@ -14,6 +14,7 @@ use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
 use crate::{controller, output};
@@ -46,6 +47,8 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// What the axis is watched for.
+    pub supervisor: SupervisorParams,
 }
 
 parameter_table! {
@@ -129,6 +132,8 @@ pub struct AxisConfig {
     pub output: output::Config,
     /// Limits of moves.
     pub limits: Limits,
+    /// What the axis is watched for.
+    pub supervisor: supervisor::Config,
 }
 
 impl AxisParams {
@@ -147,6 +152,7 @@ impl AxisParams {
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            supervisor: SupervisorParams::default(),
         }
     }
 
@@ -173,6 +179,11 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            supervisor: self.supervisor.quantise(
+                scale,
+                full_velocity,
+                scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+            )?,
         })
     }
 }

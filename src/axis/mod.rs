@@ -19,8 +19,8 @@ use crate::params::AxisConfig;
 use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
 use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{Permit, Review, Situation, Supervisor};
-use crate::units::Position;
+use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervisor};
+use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map lives.
 #[derive(Clone, Debug)]
@@ -48,7 +48,7 @@ impl<'m> Axis<'m> {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
             estimators: Estimators::new(&config.estimators),
-            supervisor: Supervisor::new(),
+            supervisor: Supervisor::new(config.supervisor),
             sources: Sources::new(&config.limits),
             compensation: Compensation::default(),
             controller: Controller::new(config.controller),
@@ -83,11 +83,20 @@ impl<'m> Axis<'m> {
             .estimators
             .feedback(&outputs.estimate, observation.position());
 
+        let told = self.output.command();
         let permit = self.supervisor.permit(&Situation {
+            tick,
             enable: inputs.enable,
             lines: &inputs.lines,
+            illegal: inputs.capture.illegal,
+            missed_ticks: inputs.missed_ticks,
+            readback: inputs.readback,
+            told,
         });
-        if !(was_enabled && permit > Permit::ZeroVolts) {
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let outputs = &mut self.outputs;
@@ -103,9 +112,22 @@ impl<'m> Axis<'m> {
 
         let permit = self.supervisor.review(&Review {
             permit,
+            tick,
             moving: outputs.moving,
             trouble: self.sources.trouble(),
+            lines: &inputs.lines,
+            observation: &observation,
+            estimate: &outputs.estimate,
+            setpoint: &outputs.setpoint,
+            following_error: outputs.following_error.to_bits(),
+            told,
+            active,
         });
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let outputs = &mut self.outputs;
+        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
@@ -113,9 +135,11 @@ impl<'m> Axis<'m> {
         };
         outputs.limits = self.output.active_limits();
         outputs.enabled = permit > Permit::Off;
-        outputs.brake_released = outputs.enabled;
+        outputs.brake_released = self.supervisor.brake_released();
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
+        outputs.warnings = self.supervisor.warnings();
+        outputs.refused = self.supervisor.is_refused();
         outputs.reported = position;
         outputs
     }
@@ -127,12 +151,50 @@ impl<'m> Axis<'m> {
         self.controller.reset();
     }
 
+    /// Notes the context of the first fault.
+    #[cold]
+    fn note_context(&mut self, position: Position, told: Command) {
+        let Outputs {
+            estimate,
+            setpoint,
+            following_error,
+            ..
+        } = &self.outputs;
+        self.supervisor.note_context(&Context {
+            position,
+            velocity: estimate.velocity,
+            setpoint_position: setpoint.position,
+            setpoint_velocity: setpoint.velocity,
+            following_error: *following_error,
+            command: told,
+        });
+    }
+
+    /// Leaves the state Fault: the axis is then disabled, and may be enabled anew.
+    ///
+    /// # Errors
+    /// [`ClearError`]; the fault then stays.
+    pub fn clear_fault(&mut self) -> Result<(), ClearError> {
+        self.supervisor.clear()
+    }
+
+    /// The supervisor: the first fault and its context, warnings, the peak of the following error.
+    #[must_use]
+    pub const fn supervisor(&self) -> &Supervisor {
+        &self.supervisor
+    }
+
+    /// The same, to report faults found between ticks and to reset warnings and peak.
+    pub const fn supervisor_mut(&mut self) -> &mut Supervisor {
+        &mut self.supervisor
+    }
+
     /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
     ///
     /// # Errors
     /// [`QueueError`]; the axis then goes on as it was.
     pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.outputs.enabled {
+        if !self.supervisor.is_following() {
             return Err(QueueError::Disabled);
         }
         self.sources
@@ -158,6 +220,7 @@ impl<'m> Axis<'m> {
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
+        self.supervisor.reconfigure(config.supervisor);
         self.sources.reconfigure(&config.limits);
         self.config = config;
         Ok(())

@@ -19,5 +19,6 @@ impl AxisParams {
         visitor.section("filter", &mut self.filter);
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);
+        visitor.section("supervisor", &mut self.supervisor);
     }
 }

@@ -11,6 +11,7 @@ use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::supervisor::SupervisorParams;
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::{AxisScale, Command, Position};
 
@@ -29,6 +30,10 @@ pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> Ax
         controller,
         output: output::Config::new(limit, slew).unwrap(),
         limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        // Captures here are such as no machine gives.
+        supervisor: SupervisorParams::widest()
+            .quantise(AxisScale::new(1000.0, 1000.0).unwrap(), 160.0, 150.0)
+            .unwrap(),
     }
 }
 
