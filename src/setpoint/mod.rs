@@ -1,10 +1,12 @@
 //! Where the axis should be: sources of setpoints.
 //!
-//! [`profile`] plans a move outside the tick, [`trajectory`] evaluates the plan in the tick.
+//! [`plan`] plans a motion outside the tick, [`trajectory`] evaluates the plan in the tick.
 //! [`follower`] goes to a velocity within limits of acceleration and jerk without a plan: for stops and for sources
 //! that others move. [`sources`] chooses.
 
 pub mod follower;
+pub mod limits;
+pub mod plan;
 pub mod profile;
 pub mod sources;
 pub mod trajectory;
