@@ -1,15 +1,18 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
 mod io;
+mod reconfigure;
 
 pub use io::{Inputs, Outputs};
+pub use reconfigure::ReconfigureError;
 
 use crate::capture::{CaptureHealth, Unwrapper};
-use crate::compensation::Compensation;
+use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::output::Output;
 use crate::params::AxisConfig;
@@ -19,15 +22,15 @@ use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{Permit, Review, Situation, Supervisor};
 use crate::units::Position;
 
-/// One axis; `'m` is how long its encoder map lives.
+/// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
-    estimator: Estimator,
+    estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
-    compensation: Compensation,
+    compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
     config: AxisConfig,
@@ -44,10 +47,10 @@ impl<'m> Axis<'m> {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimator: Estimator::new(config.estimator),
+            estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(),
             sources: Sources::new(&config.limits),
-            compensation: Compensation::default(),
+            compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             config,
@@ -62,7 +65,6 @@ impl<'m> Axis<'m> {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
-        let position = observation.position();
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -70,11 +72,16 @@ impl<'m> Axis<'m> {
         outputs.tick = tick;
         outputs.count = observation.count;
         let command = was_enabled.then(|| self.output.command());
-        outputs.estimate = self.estimator.update(&Evidence {
+        let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
+            sample: None,
             command,
-        });
+        };
+        self.estimators.update(&mut evidence, &mut outputs.estimate);
+        let (_, position) = self
+            .estimators
+            .feedback(&outputs.estimate, observation.position());
 
         let permit = self.supervisor.permit(&Situation {
             enable: inputs.enable,
@@ -88,9 +95,10 @@ impl<'m> Axis<'m> {
         outputs.moving = self.sources.is_moving();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
+        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
         let demand = self
             .controller
-            .step(&outputs.setpoint, position, &outputs.estimate, active);
+            .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
 
         let permit = self.supervisor.review(&Review {
@@ -108,14 +116,14 @@ impl<'m> Axis<'m> {
         outputs.brake_released = outputs.enabled;
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
-        outputs.reported = position;
+        outputs.reported = self.compensation.reported(position);
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.sources.hold(position);
+        self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
     }
 
@@ -132,25 +140,55 @@ impl<'m> Axis<'m> {
             .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
-    /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
-    pub fn reconfigure(&mut self, config: AxisConfig) {
+    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
+    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
+    /// estimated last. The encoder map stays.
+    ///
+    /// # Errors
+    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
+    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+        if self.outputs.enabled && self.outputs.moving {
+            ReconfigureError::check(&self.config, &config)?;
+        }
         self.edges.reconfigure(config.edges);
-        if config.estimator != self.config.estimator {
-            self.estimator = Estimator::new(config.estimator);
-            self.estimator.prime(self.outputs.estimate.velocity);
+        if config.estimators != self.config.estimators {
+            self.estimators = Estimators::new(&config.estimators);
+            self.estimators.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.sources.reconfigure(&config.limits);
+        self.compensation.reconfigure(config.compensation);
         self.config = config;
+        Ok(())
     }
 
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
+    }
+
+    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
+    /// soon as an origin is known.
+    ///
+    /// # Errors
+    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
+    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
+        self.compensation.set_table(table)
+    }
+
+    /// The compensation of the screw, and the origin that it counts from.
+    #[must_use]
+    pub const fn compensation(&self) -> &Compensation<'m> {
+        &self.compensation
+    }
+
+    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
+    /// whose place is known without homing. The loop goes on as it was.
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.
@@ -177,10 +215,10 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
-    /// The estimator in the loop.
+    /// The first estimator.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator {
-        &self.estimator
+        self.estimators.first()
     }
 
     /// What went wrong at the encoder so far.

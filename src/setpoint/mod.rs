@@ -4,11 +4,14 @@
 //! [`follower`] goes to a velocity within limits of acceleration and jerk without a plan: for stops and for sources
 //! that others move. [`sources`] chooses.
 
+pub mod analog;
 pub mod follower;
 pub mod limits;
 pub mod plan;
 pub mod profile;
+pub mod ratio;
 pub mod sources;
+pub mod step_dir;
 pub mod trajectory;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};
