@@ -14,6 +14,7 @@ use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::setpoint::sources::{self, SourceParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
 use crate::{controller, output};
@@ -46,6 +47,8 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Sources of setpoints other than planned moves.
+    pub sources: SourceParams,
 }
 
 parameter_table! {
@@ -129,6 +132,8 @@ pub struct AxisConfig {
     pub output: output::Config,
     /// Limits of moves.
     pub limits: Limits,
+    /// Sources of setpoints other than planned moves.
+    pub sources: sources::Config,
 }
 
 impl AxisParams {
@@ -147,6 +152,7 @@ impl AxisParams {
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            sources: SourceParams::default(),
         }
     }
 
@@ -161,11 +167,12 @@ impl AxisParams {
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: self.motion.limits(scale)?,
+            limits,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
@@ -173,6 +180,7 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            sources: self.sources.quantise(scale, limits, edges)?,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 mod io;
 mod reconfigure;
+mod requests;
 
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
@@ -17,7 +18,7 @@ use crate::estimator::{Estimator, Evidence};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::profile::Profile;
-use crate::setpoint::sources::Sources;
+use crate::setpoint::sources::{Source, Sources};
 use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{Permit, Review, Situation, Supervisor};
 use crate::units::Position;
@@ -49,7 +50,7 @@ impl<'m> Axis<'m> {
             edges: EdgeReader::new(config.edges),
             estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(),
-            sources: Sources::new(&config.limits),
+            sources: Sources::new(&config.limits, &config.sources),
             compensation: Compensation::default(),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
@@ -91,7 +92,11 @@ impl<'m> Axis<'m> {
             self.begin(position);
         }
         let outputs = &mut self.outputs;
-        let commanded = self.sources.step(tick, &inputs.reference, permit);
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), inputs.lines.master_lost);
+        let commanded = self.sources.step(tick, reference, permit);
+        outputs.retract = self.sources.retract();
         outputs.moving = self.sources.is_moving();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
@@ -135,6 +140,9 @@ impl<'m> Axis<'m> {
         if !self.outputs.enabled {
             return Err(QueueError::Disabled);
         }
+        if self.sources.selected() != Source::Trajectory {
+            return Err(QueueError::OtherSource);
+        }
         self.sources
             .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
@@ -158,7 +166,7 @@ impl<'m> Axis<'m> {
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
-        self.sources.reconfigure(&config.limits);
+        self.sources.reconfigure(&config.limits, &config.sources);
         self.config = config;
         Ok(())
     }

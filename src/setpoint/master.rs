@@ -132,11 +132,8 @@ impl Master {
         let observation = self.unwrapper.unwrap(capture);
         self.delta = observation.delta;
         self.count = observation.count;
-        self.estimate = self.estimator.update(&Evidence {
-            observation: &observation,
-            edges: &self.edges,
-            command: None,
-        });
+        let evidence = Evidence::new(&observation, &self.edges, None);
+        self.estimate = self.estimator.update(&evidence);
         self.is_slipped = false;
         if observation.delta != 0 {
             self.note_turns(&observation);

@@ -19,6 +19,8 @@ pub enum QueueError {
     Busy,
     /// The axis is not enabled.
     Disabled,
+    /// Another source of setpoints is selected.
+    OtherSource,
 }
 
 impl fmt::Display for QueueError {
@@ -27,6 +29,9 @@ impl fmt::Display for QueueError {
             Self::Late => "the start tick has passed: plan the move for a later one",
             Self::Busy => "another move is not finished by then: wait for its end",
             Self::Disabled => "the axis is not enabled: enable it first",
+            Self::OtherSource => {
+                "another source of setpoints is selected: select planned moves first"
+            }
         })
     }
 }
