@@ -7,6 +7,7 @@ pub mod cli;
 pub mod closed_loop;
 pub mod command;
 pub mod error;
+pub mod fault_page;
 pub mod figures;
 pub mod listening;
 pub mod machine_file;

@@ -277,6 +277,7 @@ impl Supervisor {
     #[inline(never)]
     fn decide(&mut self, situation: &Situation<'_>) -> Permit {
         self.lines = *situation.lines;
+        self.sequence.count_down();
         let is_off = matches!(self.sequence.phase(), Phase::Disabled | Phase::Faulted);
         let may_enable = situation.enable && !self.latch.is_set();
         self.judge_lines(situation, !is_off || may_enable);
