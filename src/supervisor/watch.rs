@@ -1,7 +1,8 @@
 //! All monitors together.
 
 use super::config::Config;
-use super::fault::{Fault, FaultSet};
+use super::fault::Fault;
+use super::fault_set::FaultSet;
 use super::monitor::following::{Following, Verdict};
 use super::monitor::{
     against, disabled, encoder_loss, index, leaky, readback, saturation, speed, travel,
