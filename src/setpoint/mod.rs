@@ -8,11 +8,13 @@ pub mod analog;
 pub mod follower;
 pub mod limits;
 pub mod plan;
+pub mod planner;
 pub mod profile;
 pub mod ratio;
 pub mod sources;
 pub mod step_dir;
 pub mod trajectory;
+pub mod travel;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};
 
