@@ -12,12 +12,14 @@ pub use crate::controller::params::{ControllerParams, FilterParams, FrictionPara
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{compensation, controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -49,6 +51,10 @@ pub struct AxisParams {
     pub output: OutputParams,
     /// Compensation of the screw.
     pub compensation: CompensationParams,
+    /// What the axis is watched for.
+    pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
 }
 
 parameter_table! {
@@ -134,6 +140,10 @@ pub struct AxisConfig {
     pub limits: Limits,
     /// Compensation of the screw.
     pub compensation: compensation::Config,
+    /// What the axis is watched for.
+    pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
 }
 
 impl AxisParams {
@@ -153,6 +163,8 @@ impl AxisParams {
             friction: FrictionParams::default(),
             output: OutputParams::default(),
             compensation: CompensationParams::default(),
+            supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
         }
     }
 
@@ -169,12 +181,14 @@ impl AxisParams {
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
         let limits = self.motion.limits(scale)?;
         let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: compensation.setpoint_limits(&limits)?,
+            limits,
             compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
@@ -182,6 +196,11 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            supervisor: self.supervisor.quantise(
+                scale,
+                full_velocity,
+                scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+            )?,
         })
     }
 }

@@ -23,6 +23,9 @@ pub const MAX_SLOPE: f64 = 0.1;
 /// Longest way from one point to the next, d.
 pub const MAX_SPACING_D: f64 = 8_388_607.0;
 
+/// Shortest way from one point to the next, d: a unit of the offset.
+pub const MIN_SPACING_D: f64 = 1.0 / 256.0;
+
 /// Fractional bits of an offset within a stretch.
 const OFFSET_FRAC: u32 = 8;
 /// Fractional bits of a slope.
@@ -182,10 +185,7 @@ impl Stretch {
     ) -> Result<(Self, f64, f64), TableError> {
         let next = point.saturating_add(1);
         let length = in_d(after.position) - in_d(before.position);
-        // An LSB of the offset, so that slopes are those of what the tick sees.
-        if !(libm::ldexp(1.0, OFFSET_FRAC.cast_signed().wrapping_neg())..=MAX_SPACING_D)
-            .contains(&length)
-        {
+        if !(MIN_SPACING_D..=MAX_SPACING_D).contains(&length) {
             return Err(TableError::Spacing {
                 point: next,
                 spacing_d: length,

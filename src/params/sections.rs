@@ -20,5 +20,7 @@ impl AxisParams {
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);
         visitor.section("compensation", &mut self.compensation);
+        visitor.section("homing", &mut self.homing);
+        visitor.section("supervisor", &mut self.supervisor);
     }
 }

@@ -6,13 +6,17 @@
 
 pub mod analog;
 pub mod follower;
+pub mod gearing;
+pub mod master;
 pub mod limits;
 pub mod plan;
 pub mod planner;
 pub mod profile;
 pub mod ratio;
+pub mod run_up;
 pub mod sources;
 pub mod step_dir;
+pub mod thread;
 pub mod trajectory;
 pub mod travel;
 
