@@ -6,18 +6,20 @@ pub use sections::SectionVisitor;
 
 use core::fmt;
 
+use crate::compensation::CompensationParams;
 use crate::controller::params::LawParams;
 pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -47,8 +49,12 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
     /// What the axis is watched for.
     pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
 }
 
 parameter_table! {
@@ -130,10 +136,14 @@ pub struct AxisConfig {
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
     /// What the axis is watched for.
     pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
 }
 
 impl AxisParams {
@@ -152,7 +162,9 @@ impl AxisParams {
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
         }
     }
 
@@ -167,11 +179,16 @@ impl AxisParams {
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: self.motion.limits(scale)?,
+            limits,
+            compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,

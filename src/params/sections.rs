@@ -19,6 +19,8 @@ impl AxisParams {
         visitor.section("filter", &mut self.filter);
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);
+        visitor.section("compensation", &mut self.compensation);
+        visitor.section("homing", &mut self.homing);
         visitor.section("supervisor", &mut self.supervisor);
     }
 }
