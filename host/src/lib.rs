@@ -24,6 +24,7 @@ pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;
 pub mod tacho_watch;
+pub mod threads;
 pub mod toml_file;
 pub mod truth;
 mod whole_file;

@@ -2,6 +2,7 @@
 
 mod io;
 mod reconfigure;
+mod requests;
 
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
@@ -19,7 +20,7 @@ use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
 use crate::setpoint::profile::Profile;
-use crate::setpoint::sources::Sources;
+use crate::setpoint::sources::{Source, Sources};
 use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
 use crate::units::{Command, Position};
@@ -52,7 +53,7 @@ impl<'m> Axis<'m> {
             edges: EdgeReader::new(config.edges),
             estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(config.supervisor),
-            sources: Sources::new(&config.limits),
+            sources: Sources::new(&config.limits, &config.sources),
             homing: Homing::new(config.homing),
             compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
@@ -104,12 +105,16 @@ impl<'m> Axis<'m> {
         if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), lines.master_lost);
         let commanded = if self.homing.is_active() {
             self.step_homing(&observation, inputs, permit)
         } else {
-            self.sources.step(tick, &inputs.reference, permit)
+            self.sources.step(tick, reference, permit)
         };
         let outputs = &mut self.outputs;
+        outputs.retract = self.sources.retract();
         outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
@@ -259,6 +264,9 @@ impl<'m> Axis<'m> {
         if self.homing.is_active() {
             return Err(QueueError::Busy);
         }
+        if self.sources.selected() != Source::Trajectory {
+            return Err(QueueError::OtherSource);
+        }
         self.sources
             .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
@@ -283,7 +291,7 @@ impl<'m> Axis<'m> {
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.supervisor.reconfigure(config.supervisor);
-        self.sources.reconfigure(&config.limits);
+        self.sources.reconfigure(&config.limits, &config.sources);
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
         self.config = config;
