@@ -13,6 +13,7 @@ pub mod figures;
 pub mod listening;
 pub mod machine_file;
 pub mod map_file;
+pub mod parallel;
 pub mod plot;
 mod progress;
 pub mod recording;
