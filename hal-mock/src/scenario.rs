@@ -3,7 +3,6 @@
 use core::fmt;
 
 use leadscrew::axis::{Axis, Inputs, Outputs};
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::hal::Encoder;
@@ -11,6 +10,7 @@ use leadscrew::params::{AxisConfig, AxisParams, MotionParams, ParamError};
 use leadscrew::setpoint::profile::{PlanError, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::telemetry::Record;
+use leadscrew::tuning::DriveModel;
 use leadscrew::units::{AxisScale, Position, checked};
 
 use crate::machine::{Machine, MachineParams};
@@ -72,10 +72,7 @@ impl MoveAndBack {
         machine: &MachineParams,
         estimator: EstimatorConfig,
     ) -> Result<AxisParams, ParamError> {
-        let drive = DriveModel {
-            natural_period_s: machine.drive.natural_period_s,
-            damping: machine.drive.damping,
-        };
+        let drive = DriveModel::second_order(machine.drive.natural_period_s, machine.drive.damping);
         Ok(AxisParams {
             tick_hz: self.tick_hz,
             timer_hz: machine.encoder.encoder.timer_hz,

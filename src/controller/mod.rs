@@ -18,7 +18,6 @@
 //! stays within ±1.
 
 pub mod config;
-pub mod tuning;
 
 pub use config::Config;
 
