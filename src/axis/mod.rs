@@ -4,6 +4,8 @@ mod io;
 
 pub use io::{Inputs, Outputs};
 
+use core::fmt;
+
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::compensation::Compensation;
 use crate::controller::Controller;
@@ -11,13 +13,19 @@ use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::{Estimator, Evidence};
+use crate::identification::experiment::{Experiment, Seen};
+use crate::identification::program::Program;
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
 use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{Permit, Review, Situation, Supervisor};
+use crate::supervisor::{Permit, Review, Situation, State, Supervisor};
 use crate::units::Position;
+
+/// An axis slower than this power of two below its largest speed is at rest: an offset of the drive moves it,
+/// until it is identified.
+const REST_SHIFT: u32 = 5;
 
 /// One axis; `'m` is how long its encoder map lives.
 #[derive(Clone, Debug)]
@@ -30,6 +38,7 @@ pub struct Axis<'m> {
     compensation: Compensation,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -50,6 +59,7 @@ impl<'m> Axis<'m> {
             compensation: Compensation::default(),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -80,7 +90,8 @@ impl<'m> Axis<'m> {
             enable: inputs.enable,
             lines: &inputs.lines,
         });
-        if !(was_enabled && permit > Permit::ZeroVolts) {
+        let open_loop = self.is_open_loop();
+        if open_loop || !(was_enabled && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let outputs = &mut self.outputs;
@@ -88,16 +99,29 @@ impl<'m> Axis<'m> {
         outputs.moving = self.sources.is_moving();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
-        let demand = self
-            .controller
-            .step(&outputs.setpoint, position, &outputs.estimate, active);
+        let mut demand =
+            self.controller
+                .step(&outputs.setpoint, position, &outputs.estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
             moving: outputs.moving,
             trouble: self.sources.trouble(),
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
@@ -130,6 +154,56 @@ impl<'m> Axis<'m> {
         self.sources
             .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
+    }
+
+    /// Begins an experiment with the next tick, in place of one that has ended.
+    ///
+    /// # Errors
+    /// [`StartError`]; the axis then goes on as it was.
+    pub fn start_experiment(&mut self, program: &Program) -> Result<(), StartError> {
+        let running = |experiment: &Experiment| experiment.ending().is_none();
+        if self.experiment.as_ref().is_some_and(running) {
+            return Err(StartError::Running);
+        }
+        if self.outputs.moving {
+            return Err(StartError::Moving);
+        }
+        // A state that still says moving is that of a motion whose last tick this was.
+        let is_ready = matches!(self.outputs.state, State::Ready | State::Moving);
+        if !(self.outputs.enabled && is_ready) {
+            return Err(StartError::NotReady);
+        }
+        let speed = self.outputs.estimate.velocity.to_bits().unsigned_abs();
+        let fastest = self.config.limits.max_velocity().to_bits().unsigned_abs();
+        if speed > fastest >> REST_SHIFT {
+            return Err(StartError::NotAtRest);
+        }
+        self.experiment = Some(Experiment::new(*program));
+        Ok(())
+    }
+
+    /// The experiment under way, or the one that ended and was not released yet.
+    #[must_use]
+    pub const fn experiment(&self) -> Option<&Experiment> {
+        self.experiment.as_ref()
+    }
+
+    /// Ends an experiment with the next tick: an open loop's command goes to zero and stays there.
+    pub const fn abort_experiment(&mut self) {
+        if let Some(experiment) = &mut self.experiment {
+            experiment.abort();
+        }
+    }
+
+    /// Gives the axis back to its loop, which holds it where it stands. One under way is dropped.
+    pub fn release_experiment(&mut self) {
+        self.experiment = None;
+    }
+
+    /// True while an experiment keeps the loop open.
+    fn is_open_loop(&self) -> bool {
+        let experiment = self.experiment.as_ref();
+        experiment.is_some_and(Experiment::is_open_loop)
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step; another
@@ -188,3 +262,31 @@ impl<'m> Axis<'m> {
         self.unwrapper.health()
     }
 }
+
+/// Why an experiment was not begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StartError {
+    /// The axis is not enabled and ready.
+    NotReady,
+    /// A motion is commanded.
+    Moving,
+    /// The axis moves at zero command.
+    NotAtRest,
+    /// Another experiment runs.
+    Running,
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotReady => "the axis is not ready: enable it, clear its fault",
+            Self::Moving => "the axis moves: stop it first",
+            Self::NotAtRest => {
+                "the axis moves at zero command: set the offset of the drive so that it stands"
+            }
+            Self::Running => "another experiment runs: wait for its end, or abort it",
+        })
+    }
+}
+
+impl core::error::Error for StartError {}

@@ -36,6 +36,12 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Largest velocity, d/tick.
+    #[must_use]
+    pub const fn max_velocity(&self) -> Velocity {
+        self.velocity
+    }
+
     /// Limits from d/tick, d/tick² and d/tick³, rounded down to the grid of the formats.
     ///
     /// # Errors

@@ -63,6 +63,8 @@ pub struct Review {
     pub moving: bool,
     /// What a source of setpoints cannot go on for.
     pub trouble: Option<Fault>,
+    /// An experiment keeps the loop open: there is no following error, and the bounds are the experiment's own.
+    pub open_loop: bool,
 }
 
 /// The supervisor.
