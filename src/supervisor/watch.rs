@@ -39,9 +39,11 @@ impl Watch {
         let told = review.told.to_bits();
         let count = observation.count;
 
-        if let Some(trip) = self
-            .against
-            .check(&config.against, told, observation.delta, velocity)
+        if review.open_loop {
+            self.against = against::Against::default();
+        } else if let Some(trip) =
+            self.against
+                .check(&config.against, told, observation.delta, velocity)
         {
             self.find(trip);
         }
