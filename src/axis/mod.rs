@@ -1,6 +1,7 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
 mod io;
+mod planned;
 mod reconfigure;
 
 pub use io::{Inputs, Outputs};
@@ -18,9 +19,7 @@ use crate::homing::{HomeRefused, Homing, Sight};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
-use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
-use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
 use crate::units::{Command, Position};
 
@@ -153,6 +152,7 @@ impl<'m> Axis<'m> {
         if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
             self.homing.lose_origin();
             self.compensation.set_origin(None);
+            self.sources.set_travel(None);
         }
         outputs.reported = self.compensation.reported(position);
         outputs
@@ -239,6 +239,7 @@ impl<'m> Axis<'m> {
         }
         self.homing.start(self.sources.last(), self.outputs.count);
         self.compensation.set_origin(None);
+        self.sources.set_travel(None);
         Ok(())
     }
 
@@ -246,22 +247,6 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn homing(&self) -> &Homing {
         &self.homing
-    }
-
-    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
-    ///
-    /// # Errors
-    /// [`QueueError`]; the axis then goes on as it was.
-    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.supervisor.is_following() {
-            return Err(QueueError::Disabled);
-        }
-        if self.homing.is_active() {
-            return Err(QueueError::Busy);
-        }
-        self.sources
-            .trajectory
-            .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by

@@ -7,8 +7,8 @@
 pub mod analog;
 pub mod follower;
 pub mod gearing;
-pub mod master;
 pub mod limits;
+pub mod master;
 pub mod plan;
 pub mod planner;
 pub mod profile;

@@ -2,8 +2,10 @@
 
 use super::Setpoint;
 use super::follower::{Config as FollowerConfig, Follower};
+use super::plan::Plan;
 use super::profile::Limits;
-use super::trajectory::Trajectory;
+use super::trajectory::{QueueError, Trajectory};
+use super::travel::TravelLimits;
 use crate::hal::Reference;
 use crate::supervisor::{Fault, Permit};
 use crate::units::{Position, Velocity};
@@ -17,6 +19,7 @@ pub struct Sources {
     stop: Follower,
     /// A stop runs, or the axis stands after one; no source is followed until it stands and may.
     stopping: bool,
+    travel: Option<TravelLimits>,
     last: Setpoint,
 }
 
@@ -28,6 +31,7 @@ impl Sources {
             trajectory: Trajectory::new(),
             stop: Follower::new(FollowerConfig::new(limits)),
             stopping: false,
+            travel: None,
             last: Setpoint::default(),
         }
     }
@@ -35,6 +39,32 @@ impl Sources {
     /// Takes other limits for what is not planned.
     pub fn reconfigure(&mut self, limits: &Limits) {
         self.stop.reconfigure(FollowerConfig::new(limits));
+    }
+
+    /// Takes soft limits of travel, or does without.
+    pub const fn set_travel(&mut self, travel: Option<TravelLimits>) {
+        self.travel = travel;
+    }
+
+    /// The soft limits of travel in force.
+    #[must_use]
+    pub const fn travel(&self) -> Option<TravelLimits> {
+        self.travel
+    }
+
+    /// Queues a plan; see [`Trajectory::queue`].
+    ///
+    /// # Errors
+    /// [`QueueError`]; what runs goes on.
+    pub fn queue(&mut self, plan: &Plan, start: u32, now: u32) -> Result<(), QueueError> {
+        if self.stopping {
+            return Err(QueueError::Stopping);
+        }
+        let end = self.trajectory.end_of(plan);
+        if self.travel.is_some_and(|travel| !travel.contains(end)) {
+            return Err(QueueError::BeyondTravel);
+        }
+        self.trajectory.queue(plan, start, now)
     }
 
     /// Ends all motion and stands at `position`: for an axis that is not under control.
