@@ -24,5 +24,8 @@ impl AxisParams {
         visitor.section("master", &mut self.sources.master);
         visitor.section("gearing", &mut self.sources.gearing);
         visitor.section("thread", &mut self.sources.thread);
+        visitor.section("compensation", &mut self.compensation);
+        visitor.section("homing", &mut self.homing);
+        visitor.section("supervisor", &mut self.supervisor);
     }
 }

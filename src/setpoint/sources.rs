@@ -109,6 +109,18 @@ impl Sources {
         self.start();
     }
 
+    /// The setpoint of the last tick.
+    #[must_use]
+    pub const fn last(&self) -> &Setpoint {
+        &self.last
+    }
+
+    /// The last setpoint came from elsewhere, in motion or at rest: what comes next goes on from there.
+    pub fn take_over(&mut self, last: &Setpoint) {
+        self.hold(last.position);
+        self.last = *last;
+    }
+
     /// The source that is selected stands where the axis stands.
     fn start(&mut self) {
         let position = self.last.position;

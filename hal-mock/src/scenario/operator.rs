@@ -1,6 +1,6 @@
 //! The person at the panel: plans what is asked of the axis, outside the tick.
 
-use leadscrew::axis::Axis;
+use leadscrew::axis::{Axis, Outputs};
 use leadscrew::params::AxisParams;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::units::{AxisScale, Position, checked};
@@ -16,7 +16,7 @@ const MAX_TRAVEL_MM: f64 = 1e6;
 pub struct Operator {
     params: AxisParams,
     scale: AxisScale,
-    /// Where the axis stood when it was first seen, d.
+    /// Where the axis stood in its first tick, d.
     origin: Option<Position>,
     enable: bool,
 }
@@ -34,6 +34,11 @@ impl Operator {
             origin: None,
             enable: false,
         })
+    }
+
+    /// Takes note of where the axis stands in its first tick.
+    pub fn look(&mut self, outputs: &Outputs) {
+        self.origin.get_or_insert(outputs.setpoint.position);
     }
 
     /// The axis is to be under control.
@@ -54,7 +59,7 @@ impl Operator {
                 position_mm,
                 feed_mm_per_min,
             } => {
-                let origin = *self.origin.get_or_insert(axis.outputs().setpoint.position);
+                let origin = self.origin.unwrap_or_default();
                 let target = origin.saturating_add(self.distance("position_mm", position_mm)?);
                 let way = target.saturating_sub(axis.outputs().setpoint.position);
                 self.start(way, feed_mm_per_min, tick, axis)?;
