@@ -1,6 +1,8 @@
 //! Sources of setpoints other than planned moves: pulses, analog command, gearing, threads.
 
 mod analog;
+mod gearing;
+mod master;
 mod ratio;
 #[path = "../support/seeded.rs"]
 mod seeded;
