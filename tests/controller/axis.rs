@@ -12,6 +12,7 @@ use leadscrew::homing::HomingParams;
 use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
+use leadscrew::setpoint::sources::SourceParams;
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::supervisor::SupervisorParams;
 use leadscrew::uncertainty::EdgeErrors;
@@ -23,8 +24,12 @@ use crate::signals::config as controller_config;
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
     let limits = Limits::new(1000.0, 100.0, 3.0).unwrap();
     let scale = AxisScale::new(1000.0, 1000.0).unwrap();
+    let edges = EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap();
     AxisConfig {
-        edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
+        edges,
+        sources: SourceParams::default()
+            .quantise(scale, limits, edges)
+            .unwrap(),
         scale,
         estimators: paths::Config::single(
             EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])

@@ -3,7 +3,9 @@
 mod analog;
 mod gearing;
 mod master;
+mod passes;
 mod ratio;
+mod requests;
 #[path = "../support/seeded.rs"]
 mod seeded;
 mod step_dir;
