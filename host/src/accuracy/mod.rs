@@ -19,7 +19,7 @@ mod figures;
 mod in_loop;
 mod maps;
 mod methods;
-mod parallel;
+pub mod parallel;
 mod parts;
 mod residue;
 mod rows;
