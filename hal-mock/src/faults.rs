@@ -86,6 +86,18 @@ impl FaultyEncoder {
         })
     }
 
+    /// Has `fault` instead, for `ticks` from the next capture on. What the last fault did to the count stays.
+    ///
+    /// # Errors
+    /// A figure of the fault out of range.
+    pub fn inject(&mut self, fault: Fault, ticks: u32) -> Result<(), RangeError> {
+        fault.check()?;
+        self.fault = fault;
+        self.ticks = self.tick..self.tick.saturating_add(ticks);
+        self.interference = None;
+        Ok(())
+    }
+
     /// The capture of the faulty encoder where the good one has `capture`; call it with every capture.
     pub fn apply(&mut self, capture: &Capture<'_>) -> Capture<'_> {
         self.ring.release();

@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 pub mod arc;
+pub mod board;
 pub mod carriage;
 pub mod disc;
 pub mod drive;
@@ -26,6 +27,7 @@ mod random;
 pub mod scenario;
 pub mod scene;
 mod slip;
+pub mod spindle;
 pub mod tachogenerator;
 pub mod trace;
 mod track;

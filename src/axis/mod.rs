@@ -1,8 +1,10 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
 mod io;
+mod reconfigure;
 
 pub use io::{Inputs, Outputs};
+pub use reconfigure::ReconfigureError;
 
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::compensation::Compensation;
@@ -10,6 +12,7 @@ use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::output::Output;
 use crate::params::AxisConfig;
@@ -24,7 +27,7 @@ use crate::units::Position;
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
-    estimator: Estimator,
+    estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
     compensation: Compensation,
@@ -44,9 +47,9 @@ impl<'m> Axis<'m> {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimator: Estimator::new(config.estimator),
+            estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(),
-            sources: Sources::new(),
+            sources: Sources::new(&config.limits),
             compensation: Compensation::default(),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
@@ -62,7 +65,6 @@ impl<'m> Axis<'m> {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
-        let position = observation.position();
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -70,11 +72,16 @@ impl<'m> Axis<'m> {
         outputs.tick = tick;
         outputs.count = observation.count;
         let command = was_enabled.then(|| self.output.command());
-        outputs.estimate = self.estimator.update(&Evidence {
+        let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
+            sample: None,
             command,
-        });
+        };
+        self.estimators.update(&mut evidence, &mut outputs.estimate);
+        let (_, position) = self
+            .estimators
+            .feedback(&outputs.estimate, observation.position());
 
         let permit = self.supervisor.permit(&Situation {
             enable: inputs.enable,
@@ -88,9 +95,10 @@ impl<'m> Axis<'m> {
         outputs.moving = self.sources.is_moving();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
+        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
         let demand = self
             .controller
-            .step(&outputs.setpoint, position, &outputs.estimate, active);
+            .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
 
         let permit = self.supervisor.review(&Review {
@@ -132,18 +140,27 @@ impl<'m> Axis<'m> {
             .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
-    /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
-    pub fn reconfigure(&mut self, config: AxisConfig) {
+    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
+    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
+    /// estimated last. The encoder map stays.
+    ///
+    /// # Errors
+    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
+    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+        if self.outputs.enabled && self.outputs.moving {
+            ReconfigureError::check(&self.config, &config)?;
+        }
         self.edges.reconfigure(config.edges);
-        if config.estimator != self.config.estimator {
-            self.estimator = Estimator::new(config.estimator);
-            self.estimator.prime(self.outputs.estimate.velocity);
+        if config.estimators != self.config.estimators {
+            self.estimators = Estimators::new(&config.estimators);
+            self.estimators.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
+        self.sources.reconfigure(&config.limits);
         self.config = config;
+        Ok(())
     }
 
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
@@ -176,10 +193,10 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
-    /// The estimator in the loop.
+    /// The first estimator.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator {
-        &self.estimator
+        self.estimators.first()
     }
 
     /// What went wrong at the encoder so far.

@@ -5,13 +5,14 @@ use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
 use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::{self, Choice};
 use leadscrew::hal::Capture;
 use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::uncertainty::EdgeErrors;
-use leadscrew::units::{Command, Position};
+use leadscrew::units::{AxisScale, Command, Position};
 
 use crate::signals::config as controller_config;
 
@@ -19,9 +20,12 @@ use crate::signals::config as controller_config;
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
     AxisConfig {
         edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
-        estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
-            .unwrap()
-            .unwrap(),
+        scale: AxisScale::new(1000.0, 1000.0).unwrap(),
+        estimators: paths::Config::single(
+            EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
+                .unwrap()
+                .unwrap(),
+        ),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
         limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
@@ -115,7 +119,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         controller_config(&gains, 0.0, 0.1, 50.0),
         1.0,
         2.0,
-    ));
+    ))
+    .unwrap();
     let after = *axis.step(&still(30, true));
     assert_eq!(after.command, before.command);
     assert_eq!(
@@ -123,5 +128,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         Position::lit("30.5"),
         "no jump from zero"
     );
-    assert_eq!(axis.config().estimator.name(), "exponential");
+    assert_eq!(
+        axis.config().estimators.of(Choice::First).name(),
+        "exponential"
+    );
 }

@@ -1,9 +1,11 @@
 //! Planned moves and their evaluation: limits, arrival, duration, the queue.
 
 mod evaluation;
+mod follower;
 mod moves;
 mod oracle;
 mod queue;
 mod refusals;
 #[path = "../support/seeded.rs"]
 mod seeded;
+mod stop;

@@ -138,6 +138,7 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             _ => return error.into(),
         },
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
+        ScenarioError::NoSuchEstimator => format!("--estimator {}", args.estimator),
     };
     CommandError::Usage(format!("{blamed}: {error}"))
 }
