@@ -66,7 +66,11 @@ impl<'m> Rig<'m> {
     ///
     /// # Errors
     /// A move that cannot be planned, or a fault.
-    pub fn there_and_back(mut self, way: f64, feed_mm_per_min: f64) -> Result<Trace, TrackingError> {
+    pub fn there_and_back(
+        mut self,
+        way: f64,
+        feed_mm_per_min: f64,
+    ) -> Result<Trace, TrackingError> {
         self.rest(DWELL_S)?;
         self.travel(way, feed_mm_per_min)?;
         self.rest(DWELL_S)?;

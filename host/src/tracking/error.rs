@@ -28,18 +28,22 @@ pub enum TrackingError {
     #[error("the learned map cannot be used: {0}")]
     Map(#[from] MapError),
     /// A fault ended a run.
-    #[error(
-        "{scene}, encoder {seed}: the axis stopped in tick {tick} with {fault:?}; expected a run without fault"
-    )]
+    #[error("the axis stopped in tick {tick} with {fault:?}; expected a run without fault")]
     Fault {
-        /// The scene.
-        scene: &'static str,
-        /// The encoder.
-        seed: u64,
         /// The fault.
         fault: Fault,
         /// When it came.
         tick: u32,
+    },
+    /// Why a scene has no figures.
+    #[error("{scene}, encoder {seed}: {error}")]
+    Scene {
+        /// The scene.
+        scene: &'static str,
+        /// The encoder.
+        seed: u64,
+        /// Why.
+        error: Box<TrackingError>,
     },
     /// A relay makes no limit cycle.
     #[error("the relay of {effort_d_per_s} d/s did not switch in {ticks} ticks: raise the effort")]

@@ -2,14 +2,11 @@
 
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::machine::{MachineParams, MountParams};
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
-
-use leadscrew::params::AxisConfig;
 
 /// Control rate of all tables, Hz.
 pub const TICK_HZ: f64 = 1000.0;
-/// Rest at the end of a run beyond that between its moves, ticks: limit cycles are looked for in 10 s.
-const REST_TICKS: u32 = 10_000;
+/// Way of the moves, mm.
+pub const MOVE_MM: f64 = 300.0;
 
 /// A machine, and how it differs from the one that an axis is tuned on.
 #[derive(Clone, Copy, Debug)]
@@ -118,26 +115,5 @@ impl Scene {
         machine.drive.full_command_feed_mm_per_min *= self.actual.0;
         machine.drive.natural_period_s *= self.actual.1;
         machine
-    }
-
-    /// 300 mm there and back.
-    #[must_use]
-    pub fn course(&self) -> MoveAndBack {
-        MoveAndBack {
-            feed_mm_per_min: self.feed_mm_per_min,
-            dwell_s: 1.2,
-            ..MoveAndBack::standard(TICK_HZ)
-        }
-    }
-
-    /// The moves planned for an axis of `config`, with a long rest at the end.
-    ///
-    /// # Errors
-    /// A move that cannot be planned.
-    pub fn script(&self, config: &AxisConfig) -> Result<Script, ScenarioError> {
-        let counts_per_mm = self.nominal.mount.counts_per_mm;
-        let mut script = Script::new(&self.course(), counts_per_mm, config)?;
-        script.ticks += REST_TICKS;
-        Ok(script)
     }
 }

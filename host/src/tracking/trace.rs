@@ -57,9 +57,7 @@ impl MoveFigures {
     /// Of a run that begins at rest and ends with one of more than a second.
     #[must_use]
     pub fn of(trace: &[Tick]) -> Self {
-        let is_moving = |pair: &&[Tick]| pair[0].setpoint != pair[1].setpoint;
-        let moving = || trace.windows(2).filter(is_moving).map(|pair| &pair[1]);
-        let origin = mean(moving().map(|tick| tick.seen - tick.shaft)).unwrap_or_default();
+        let origin = origin(trace);
         let error = |tick: &Tick| tick.setpoint - tick.shaft - origin;
         let all: Spread = trace.iter().map(error).collect();
         let seen: Spread = trace.iter().map(|tick| tick.setpoint - tick.seen).collect();
@@ -78,7 +76,7 @@ impl MoveFigures {
         });
         Self {
             peak: all.peak(),
-            rms: moving().map(error).collect::<Spread>().rms(),
+            rms: moving(trace).map(error).collect::<Spread>().rms(),
             seen_peak: seen.peak(),
             standing_mean: standing.iter().sum::<f64>() / standing.len().max(1) as f64,
             standing_peak: standing.iter().fold(0.0, |most, &value| most.max(value)),
@@ -113,6 +111,27 @@ impl MoveFigures {
     pub fn oscillates(&self) -> bool {
         self.output_swings >= OSCILLATION_SWINGS
     }
+}
+
+/// Ticks in which the setpoint moves.
+fn moving(trace: &[Tick]) -> impl Iterator<Item = &Tick> {
+    let pairs = trace.windows(2);
+    pairs
+        .filter(|pair| pair[0].setpoint != pair[1].setpoint)
+        .map(|pair| &pair[1])
+}
+
+/// Where the shaft's zero lies in the coordinate of the loop.
+fn origin(trace: &[Tick]) -> f64 {
+    mean(moving(trace).map(|tick| tick.seen - tick.shaft)).unwrap_or_default()
+}
+
+/// Following errors at the shaft, d.
+#[must_use]
+pub fn errors(trace: &[Tick]) -> Vec<f64> {
+    let origin = origin(trace);
+    let error = |tick: &Tick| tick.setpoint - tick.shaft - origin;
+    trace.iter().map(error).collect()
 }
 
 /// Spans of ticks in which the setpoint stands, each longer than 50 ticks.

@@ -11,13 +11,44 @@ use super::margins::Margins;
 use crate::accuracy::parallel;
 use crate::tracking::error::TrackingError;
 use crate::tracking::scene::Scene;
+use crate::tracking::setpoints;
 use crate::tracking::trace::MoveFigures;
 
-/// Tuned for the full nominal machine with P, I, D, FF1, FF2, bias and deadband.
-pub const FOR_NOMINAL: PidParams = NONE;
+/// Tuned for the full nominal machine, [`Manner::WithMargins`].
+pub const WITH_MARGINS: PidParams = PidParams {
+    p: 43.0,
+    i: 800.0,
+    d: 1.33,
+    ff1: 0.968,
+    ff2: 0.0143,
+    bias: 3610.0,
+    deadband: 0.6,
+    ..NONE
+};
 
-/// Tuned for the worst of the full nominal machine and both off nominal, FF3 too: by one who knows them all.
-pub const FOR_ALL: PidParams = NONE;
+/// Tuned for the full nominal machine, [`Manner::ToTheEdge`].
+pub const TO_THE_EDGE: PidParams = PidParams {
+    p: 80.4,
+    i: 3510.0,
+    d: 3.41,
+    ff1: 0.985,
+    ff2: 0.0128,
+    bias: 2750.0,
+    ..NONE
+};
+
+/// Tuned for the worst of the full nominal machine and both off nominal, [`Manner::EveryGain`]: by one who knows
+/// them all.
+pub const FOR_ALL: PidParams = PidParams {
+    p: 79.2,
+    i: 2820.0,
+    d: 1.88,
+    ff1: 1.0,
+    ff2: 0.0189,
+    ff3: 0.000_272,
+    bias: 6170.0,
+    ..NONE
+};
 
 /// All gains zero.
 pub const NONE: PidParams = PidParams {
@@ -66,10 +97,49 @@ pub enum Manner {
     WithMargins,
     /// The same gains to the very edge, nothing in hand.
     ToTheEdge,
-    /// FF3 as well, and nothing in hand.
+    /// FF3 as well, nothing in hand, for the worst of the full nominal machine and both off nominal.
     EveryGain,
 }
 
+impl Manner {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::WithMargins, Self::ToTheEdge, Self::EveryGain];
+
+    /// What the search of it found.
+    #[must_use]
+    pub const fn found(self) -> PidParams {
+        match self {
+            Self::WithMargins => WITH_MARGINS,
+            Self::ToTheEdge => TO_THE_EDGE,
+            Self::EveryGain => FOR_ALL,
+        }
+    }
+}
+
+/// What is tuned for in a `manner`.
+///
+/// # Errors
+/// Never with the scenes built in, which a test shows.
+pub fn lessons(manner: Manner) -> Result<Vec<Lesson>, TrackingError> {
+    let [_, full, _, low, high] = Scene::of_moves();
+    let scenes = match manner {
+        Manner::WithMargins | Manner::ToTheEdge => vec![full],
+        Manner::EveryGain => vec![full, low, high],
+    };
+    let lesson = |scene: Scene| {
+        let mut setpoints = setpoints(&scene)?;
+        setpoints.truncate(setpoints.len().saturating_sub(LEFT_OUT_TICKS));
+        Ok(Lesson {
+            scene,
+            setpoints,
+            seed: 1,
+        })
+    };
+    scenes.into_iter().map(lesson).collect()
+}
+
+/// Of the rest at the end of the course, which takes time and teaches nothing, ticks.
+const LEFT_OUT_TICKS: usize = 8500;
 /// Best of the grid that are refined.
 const REFINED: usize = 4;
 /// Relative steps of the refinement, coarse to fine.

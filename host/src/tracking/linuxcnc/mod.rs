@@ -14,5 +14,6 @@ pub mod hand;
 pub mod law;
 pub mod margins;
 pub mod relay;
+pub mod tunings;
 
 pub use self::law::{Pid, PidInputs, PidParams};
