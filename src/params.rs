@@ -1,18 +1,25 @@
 //! Parameters in physical units, and their validation into the quantised configuration of the tick.
 
+mod sections;
+
+pub use sections::SectionVisitor;
+
 use core::fmt;
 
+use crate::compensation::CompensationParams;
 use crate::controller::params::LawParams;
 pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
+use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -30,6 +37,10 @@ pub struct AxisParams {
     pub motion: MotionParams,
     /// Estimator; its parameters are in ticks.
     pub estimator: EstimatorConfig,
+    /// A second one for paths of its own; it costs only where it is given.
+    pub second_estimator: Option<EstimatorConfig>,
+    /// Which of them serves which path.
+    pub paths: Paths,
     /// Control law.
     pub controller: ControllerParams,
     /// Filters of its feedback part.
@@ -38,8 +49,12 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
     /// What the axis is watched for.
     pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
 }
 
 parameter_table! {
@@ -113,16 +128,22 @@ impl core::error::Error for ParamError {}
 pub struct AxisConfig {
     /// Edge timer and noise of the edges.
     pub edges: EdgeConfig,
-    /// Estimator.
-    pub estimator: EstimatorConfig,
+    /// Counts and ticks.
+    pub scale: AxisScale,
+    /// Estimators and their paths.
+    pub estimators: EstimatorsConfig,
     /// Control law.
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
     /// What the axis is watched for.
     pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
 }
 
 impl AxisParams {
@@ -135,11 +156,15 @@ impl AxisParams {
             encoder: EdgeErrors::default(),
             motion: MotionParams::default(),
             estimator,
+            second_estimator: None,
+            paths: Paths::default(),
             controller: ControllerParams::default(),
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
         }
     }
 
@@ -153,16 +178,23 @@ impl AxisParams {
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
+        let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
-            estimator: self.estimator,
-            limits: self.motion.limits(scale)?,
+            scale,
+            estimators,
+            limits,
+            compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
                 friction: &self.friction,
             }
-            .quantise(scale, full_velocity, self.estimator.delay())?,
+            .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
             supervisor: self.supervisor.quantise(
                 scale,

@@ -28,6 +28,7 @@ mod random;
 pub mod scenario;
 pub mod scene;
 mod slip;
+pub mod spindle;
 pub mod tachogenerator;
 pub mod trace;
 mod track;

@@ -148,6 +148,14 @@ impl Machine {
         self.encoder.advance(&self.seen);
     }
 
+    /// Lets the encoder's coupling lose the share `lost` of its motion from the next step on, 1 for all of it.
+    pub fn set_slip(&mut self, lost: f64) {
+        match &mut self.slip {
+            Some(slip) => slip.set(lost),
+            None => self.slip = Slip::new(lost, 0.0),
+        }
+    }
+
     /// The encoder, for where its edges really lie.
     #[must_use]
     pub const fn encoder(&self) -> &Encoder {
@@ -162,6 +170,12 @@ impl Machine {
             shaft,
             carriage: self.carriage.state(),
         }
+    }
+
+    /// The screw at the sampling instant: where the encoder is, unless its coupling has play or slips.
+    #[must_use]
+    pub fn screw(&self) -> State {
+        self.turned.0.at(1.0 - self.encoder.sampling_advance())
     }
 
     /// Mean reading of the tachogenerator over the last tick, d/tick. Call it once a tick, or never: the

@@ -1,33 +1,39 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
 mod io;
+mod reconfigure;
 
 pub use io::{Inputs, Outputs};
+pub use reconfigure::ReconfigureError;
 
-use crate::capture::{CaptureHealth, Unwrapper};
-use crate::compensation::Compensation;
+use crate::capture::{CaptureHealth, Observation, Unwrapper};
+use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
+use crate::homing::{HomeRefused, Homing, Sight};
 use crate::output::Output;
 use crate::params::AxisConfig;
+use crate::setpoint::Setpoint;
 use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
 use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervisor};
+use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
 use crate::units::{Command, Position};
 
-/// One axis; `'m` is how long its encoder map lives.
+/// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
-    estimator: Estimator,
+    estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
-    compensation: Compensation,
+    homing: Homing,
+    compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
     config: AxisConfig,
@@ -44,10 +50,11 @@ impl<'m> Axis<'m> {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimator: Estimator::new(config.estimator),
+            estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(config.supervisor),
             sources: Sources::new(&config.limits),
-            compensation: Compensation::default(),
+            homing: Homing::new(config.homing),
+            compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             config,
@@ -62,7 +69,6 @@ impl<'m> Axis<'m> {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
-        let position = observation.position();
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -70,17 +76,23 @@ impl<'m> Axis<'m> {
         outputs.tick = tick;
         outputs.count = observation.count;
         let command = was_enabled.then(|| self.output.command());
-        outputs.estimate = self.estimator.update(&Evidence {
+        let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
+            sample: None,
             command,
-        });
+        };
+        self.estimators.update(&mut evidence, &mut outputs.estimate);
+        let (_, position) = self
+            .estimators
+            .feedback(&outputs.estimate, observation.position());
 
         let told = self.output.command();
+        let lines = self.homing.without_limit_left(inputs.lines);
         let permit = self.supervisor.permit(&Situation {
             tick,
             enable: inputs.enable,
-            lines: &inputs.lines,
+            lines: &lines,
             illegal: inputs.capture.illegal,
             missed_ticks: inputs.missed_ticks,
             readback: inputs.readback,
@@ -92,22 +104,27 @@ impl<'m> Axis<'m> {
         if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let commanded = if self.homing.is_active() {
+            self.step_homing(&observation, inputs, permit)
+        } else {
+            self.sources.step(tick, &inputs.reference, permit)
+        };
         let outputs = &mut self.outputs;
-        let commanded = self.sources.step(tick, &inputs.reference, permit);
-        outputs.moving = self.sources.is_moving();
+        outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
+        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
         let demand = self
             .controller
-            .step(&outputs.setpoint, position, &outputs.estimate, active);
+            .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
 
         let permit = self.supervisor.review(&Review {
             permit,
             tick,
             moving: outputs.moving,
-            trouble: self.sources.trouble(),
-            lines: &inputs.lines,
+            trouble: self.sources.trouble().or(self.homing.trouble()),
+            lines: &lines,
             observation: &observation,
             estimate: &outputs.estimate,
             setpoint: &outputs.setpoint,
@@ -132,14 +149,20 @@ impl<'m> Axis<'m> {
         outputs.fault = self.supervisor.fault();
         outputs.warnings = self.supervisor.warnings();
         outputs.refused = self.supervisor.is_refused();
-        outputs.reported = position;
+        let is_index_right = self.homing.check_index(&observation);
+        if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
+            self.homing.lose_origin();
+            self.compensation.set_origin(None);
+        }
+        outputs.reported = self.compensation.reported(position);
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.sources.hold(position);
+        self.homing.abort();
+        self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
     }
 
@@ -181,6 +204,50 @@ impl<'m> Axis<'m> {
         &mut self.supervisor
     }
 
+    /// A tick of homing, or its end where it may not go on: the sources go on from there.
+    #[cold]
+    fn step_homing(
+        &mut self,
+        observation: &Observation<'_>,
+        inputs: &Inputs<'_>,
+        permit: Permit,
+    ) -> Setpoint {
+        if permit < Permit::Follow {
+            self.homing.abort();
+            return self
+                .sources
+                .step(self.tick.wrapping_sub(1), &inputs.reference, permit);
+        }
+        let setpoint = self.homing.step(&Sight {
+            observation,
+            lines: &inputs.lines,
+            index_error: self.edges.index_error(observation),
+        });
+        self.sources.take_over(&setpoint);
+        self.compensation.set_origin(self.homing.origin());
+        setpoint
+    }
+
+    /// Begins homing with the next tick. The origin of before is given up, and with it, by its slew, the
+    /// compensation of the screw.
+    ///
+    /// # Errors
+    /// [`HomeRefused`] unless the axis is ready and at rest.
+    pub fn home(&mut self) -> Result<(), HomeRefused> {
+        if self.outputs.state != State::Ready || self.outputs.moving {
+            return Err(HomeRefused::NotReady);
+        }
+        self.homing.start(self.sources.last(), self.outputs.count);
+        self.compensation.set_origin(None);
+        Ok(())
+    }
+
+    /// Homing: where it stands, what it found, and why it failed.
+    #[must_use]
+    pub const fn homing(&self) -> &Homing {
+        &self.homing
+    }
+
     /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
     ///
     /// # Errors
@@ -189,31 +256,66 @@ impl<'m> Axis<'m> {
         if !self.supervisor.is_following() {
             return Err(QueueError::Disabled);
         }
+        if self.homing.is_active() {
+            return Err(QueueError::Busy);
+        }
         self.sources
             .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
-    /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
-    pub fn reconfigure(&mut self, config: AxisConfig) {
+    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
+    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
+    /// estimated last. The encoder map stays.
+    ///
+    /// # Errors
+    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
+    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+        if self.outputs.enabled && self.outputs.moving {
+            ReconfigureError::check(&self.config, &config)?;
+        }
         self.edges.reconfigure(config.edges);
-        if config.estimator != self.config.estimator {
-            self.estimator = Estimator::new(config.estimator);
-            self.estimator.prime(self.outputs.estimate.velocity);
+        if config.estimators != self.config.estimators {
+            self.estimators = Estimators::new(&config.estimators);
+            self.estimators.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.supervisor.reconfigure(config.supervisor);
         self.sources.reconfigure(&config.limits);
+        self.compensation.reconfigure(config.compensation);
+        self.homing.reconfigure(config.homing);
         self.config = config;
+        Ok(())
     }
 
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
+    }
+
+    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
+    /// soon as an origin is known.
+    ///
+    /// # Errors
+    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
+    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
+        self.compensation.set_table(table)
+    }
+
+    /// The compensation of the screw, and the origin that it counts from.
+    #[must_use]
+    pub const fn compensation(&self) -> &Compensation<'m> {
+        &self.compensation
+    }
+
+    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
+    /// whose place is known without homing. The loop goes on as it was.
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.homing.set_origin(origin);
+        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.
@@ -240,10 +342,10 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
-    /// The estimator in the loop.
+    /// The first estimator.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator {
-        &self.estimator
+        self.estimators.first()
     }
 
     /// What went wrong at the encoder so far.
@@ -251,4 +353,15 @@ impl<'m> Axis<'m> {
     pub const fn capture_health(&self) -> CaptureHealth {
         self.unwrapper.health()
     }
+}
+
+/// True for a fault after which the count may not tell the place any more.
+const fn loses_place(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::SignalLoss
+            | Fault::IllegalTransitions
+            | Fault::IndexInconsistent
+            | Fault::EncoderLoss
+    )
 }

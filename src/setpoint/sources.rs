@@ -48,6 +48,18 @@ impl Sources {
         };
     }
 
+    /// The setpoint of the last tick.
+    #[must_use]
+    pub const fn last(&self) -> &Setpoint {
+        &self.last
+    }
+
+    /// The last setpoint came from elsewhere, in motion or at rest: what comes next goes on from there.
+    pub fn take_over(&mut self, last: &Setpoint) {
+        self.hold(last.position);
+        self.last = *last;
+    }
+
     /// True while a motion is commanded; a stop is one until it stands.
     #[must_use]
     pub const fn is_moving(&self) -> bool {

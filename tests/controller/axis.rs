@@ -1,11 +1,14 @@
 //! The whole step: enabling, moves, and a change of configuration.
 
 use leadscrew::axis::{Axis, Inputs};
+use leadscrew::compensation::CompensationParams;
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
 use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::{self, Choice};
 use leadscrew::hal::Capture;
+use leadscrew::homing::HomingParams;
 use leadscrew::output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::profile::{Limits, Profile};
@@ -18,18 +21,27 @@ use crate::signals::config as controller_config;
 
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
+    let limits = Limits::new(1000.0, 100.0, 3.0).unwrap();
+    let scale = AxisScale::new(1000.0, 1000.0).unwrap();
     AxisConfig {
         edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
-        estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
-            .unwrap()
-            .unwrap(),
+        scale,
+        estimators: paths::Config::single(
+            EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
+                .unwrap()
+                .unwrap(),
+        ),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
-        limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        limits,
+        compensation: CompensationParams::default()
+            .quantise(scale, &limits)
+            .unwrap(),
         // Captures here are such as no machine gives.
         supervisor: SupervisorParams::widest()
-            .quantise(AxisScale::new(1000.0, 1000.0).unwrap(), 160.0, 150.0)
+            .quantise(scale, 160.0, 150.0)
             .unwrap(),
+        homing: HomingParams::default().quantise(scale, &limits).unwrap(),
     }
 }
 
@@ -120,7 +132,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         controller_config(&gains, 0.0, 0.1, 50.0),
         1.0,
         2.0,
-    ));
+    ))
+    .unwrap();
     let after = *axis.step(&still(30, true));
     assert_eq!(after.command, before.command);
     assert_eq!(
@@ -128,5 +141,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         Position::lit("30.5"),
         "no jump from zero"
     );
-    assert_eq!(axis.config().estimator.name(), "exponential");
+    assert_eq!(
+        axis.config().estimators.of(Choice::First).name(),
+        "exponential"
+    );
 }

@@ -2,6 +2,7 @@
 
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
@@ -37,7 +38,7 @@ fn the_defaults_are_valid_with_every_estimator_at_every_usual_tick_rate() {
             }
             .validate()
             .unwrap();
-            assert_eq!(config.estimator.name(), *name);
+            assert_eq!(config.estimators.of(Choice::First).name(), *name);
         }
     }
 }

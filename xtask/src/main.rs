@@ -64,6 +64,8 @@ fn golden_tables() -> Result<()> {
             "--test",
             "accuracy",
             "--test",
+            "docs",
+            "--test",
             "supervisor",
         ])
         .env("INSTA_UPDATE", "always")
