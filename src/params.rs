@@ -16,6 +16,7 @@ use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::setpoint::sources::{self, SourceParams};
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
@@ -55,6 +56,8 @@ pub struct AxisParams {
     pub supervisor: SupervisorParams,
     /// Homing.
     pub homing: HomingParams,
+    /// Sources of setpoints other than planned moves.
+    pub sources: SourceParams,
 }
 
 parameter_table! {
@@ -144,6 +147,8 @@ pub struct AxisConfig {
     pub supervisor: supervisor::Config,
     /// Homing.
     pub homing: homing::Config,
+    /// Sources of setpoints other than planned moves.
+    pub sources: sources::Config,
 }
 
 impl AxisParams {
@@ -165,6 +170,7 @@ impl AxisParams {
             compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
             homing: HomingParams::default(),
+            sources: SourceParams::default(),
         }
     }
 
@@ -196,6 +202,7 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            sources: self.sources.quantise(scale, limits, edges)?,
             supervisor: self.supervisor.quantise(
                 scale,
                 full_velocity,

@@ -52,6 +52,8 @@ pub struct Outputs {
     pub brake_released: bool,
     /// A motion is commanded.
     pub moving: bool,
+    /// The tool is to be retracted: a pass of a thread nears its end.
+    pub retract: bool,
     /// Where the supervisor stands.
     pub state: State,
     /// The fault that brought the axis to [`State::Fault`].

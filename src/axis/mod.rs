@@ -1,8 +1,12 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
+mod planned;
 mod reconfigure;
+mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 
@@ -15,12 +19,11 @@ use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::homing::{HomeRefused, Homing, Sight};
+use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
-use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
-use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
 use crate::units::{Command, Position};
 
@@ -36,6 +39,7 @@ pub struct Axis<'m> {
     compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -52,11 +56,12 @@ impl<'m> Axis<'m> {
             edges: EdgeReader::new(config.edges),
             estimators: Estimators::new(&config.estimators),
             supervisor: Supervisor::new(config.supervisor),
-            sources: Sources::new(&config.limits),
+            sources: Sources::new(&config.limits, &config.sources),
             homing: Homing::new(config.homing),
             compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -101,23 +106,37 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
+        let open_loop = self.is_open_loop();
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), lines.master_lost);
         let commanded = if self.homing.is_active() {
             self.step_homing(&observation, inputs, permit)
         } else {
-            self.sources.step(tick, &inputs.reference, permit)
+            self.sources.step(tick, reference, permit)
         };
         let outputs = &mut self.outputs;
+        outputs.retract = self.sources.retract();
         outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
         let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
-        let demand = self
+        let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
@@ -131,7 +150,11 @@ impl<'m> Axis<'m> {
             following_error: outputs.following_error.to_bits(),
             told,
             active,
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
@@ -153,6 +176,7 @@ impl<'m> Axis<'m> {
         if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
             self.homing.lose_origin();
             self.compensation.set_origin(None);
+            self.sources.set_travel(None);
         }
         outputs.reported = self.compensation.reported(position);
         outputs
@@ -239,6 +263,7 @@ impl<'m> Axis<'m> {
         }
         self.homing.start(self.sources.last(), self.outputs.count);
         self.compensation.set_origin(None);
+        self.sources.set_travel(None);
         Ok(())
     }
 
@@ -246,22 +271,6 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn homing(&self) -> &Homing {
         &self.homing
-    }
-
-    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
-    ///
-    /// # Errors
-    /// [`QueueError`]; the axis then goes on as it was.
-    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.supervisor.is_following() {
-            return Err(QueueError::Disabled);
-        }
-        if self.homing.is_active() {
-            return Err(QueueError::Busy);
-        }
-        self.sources
-            .trajectory
-            .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
@@ -283,7 +292,7 @@ impl<'m> Axis<'m> {
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
         self.supervisor.reconfigure(config.supervisor);
-        self.sources.reconfigure(&config.limits);
+        self.sources.reconfigure(&config.limits, &config.sources);
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
         self.config = config;

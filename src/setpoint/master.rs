@@ -19,7 +19,7 @@ parameter_table! {
         /// Counts (x4) a revolution
         master_counts_per_revolution: 4096.0, "d", 16.0..=1e6;
         /// Window of the estimate of its speed
-        master_window_ticks: 15.0, "ticks", 4.0..=64.0;
+        master_window_ticks: 8.0, "ticks", 4.0..=64.0;
         /// How far an index may lie from where the one before says
         master_index_tolerance_counts: 3.0, "d", 1.0..=100.0;
     }
@@ -132,9 +132,8 @@ impl Master {
         let observation = self.unwrapper.unwrap(capture);
         self.delta = observation.delta;
         self.count = observation.count;
-        self.estimate = self
-            .estimator
-            .update(&Evidence::new(&observation, &self.edges, None));
+        let evidence = Evidence::new(&observation, &self.edges, None);
+        self.estimate = self.estimator.update(&evidence);
         self.is_slipped = false;
         if observation.delta != 0 {
             self.note_turns(&observation);

@@ -10,6 +10,7 @@ pub mod gearing;
 pub mod limits;
 pub mod master;
 pub mod plan;
+pub mod planner;
 pub mod profile;
 pub mod ratio;
 pub mod run_up;
@@ -17,6 +18,7 @@ pub mod sources;
 pub mod step_dir;
 pub mod thread;
 pub mod trajectory;
+pub mod travel;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};
 

@@ -35,10 +35,10 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// For a size of 2⁻²⁰ to 2²⁰.
+    /// For zero, or a size of 2⁻³² to 2²⁹.
     pub(super) fn new(value: f64) -> Self {
         let exponent = libm::floor(libm::log2(libm::fabs(value)));
-        let shift = 30_i32.wrapping_sub(exponent.clamp(-20.0, 20.0) as i32);
+        let shift = 30_i32.wrapping_sub(exponent.clamp(-32.0, 29.0) as i32);
         Self {
             mantissa: saturate(libm::round(libm::ldexp(value, shift)) as i64),
             shift: shift.cast_unsigned(),

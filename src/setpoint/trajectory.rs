@@ -24,6 +24,8 @@ pub enum QueueError {
     Stopping,
     /// It ends beyond the soft limits of travel.
     BeyondTravel,
+    /// Another source of setpoints is selected.
+    OtherSource,
 }
 
 impl fmt::Display for QueueError {
@@ -34,6 +36,9 @@ impl fmt::Display for QueueError {
             Self::Disabled => "the axis is not enabled: enable it first",
             Self::Stopping => "the axis is being stopped: wait until it stands and may move",
             Self::BeyondTravel => "the move ends beyond the soft limits: choose a nearer target",
+            Self::OtherSource => {
+                "another source of setpoints is selected: select planned moves first"
+            }
         })
     }
 }

@@ -8,6 +8,7 @@ use core::fmt;
 
 use super::Setpoint;
 use super::follower::Config;
+use crate::supervisor::Fault;
 use crate::units::Position;
 
 /// The stretch in which setpoints may lie.
@@ -69,18 +70,32 @@ impl TravelLimits {
         (self.low..=self.high).contains(&position)
     }
 
-    /// True if a stop within `config` that begins after `next` ends within the limits, or leads back to them.
+    /// Passes on a setpoint that no plan made, or refuses it where it would lead beyond the limits: a stop from the
+    /// setpoint before it then ends within.
+    ///
+    /// # Errors
+    /// [`Fault::SoftLimit`]
+    #[inline]
+    pub fn guard(&self, config: &Config, next: Setpoint) -> Result<Setpoint, Fault> {
+        if self.admits(config, &next) {
+            Ok(next)
+        } else {
+            Err(Fault::SoftLimit)
+        }
+    }
+
+    /// True if a stop within `config` that begins after `next` ends within the limits, or if `next` leads back to
+    /// them. An axis that stands may stand anywhere.
     #[must_use]
     pub fn admits(&self, config: &Config, next: &Setpoint) -> bool {
+        let velocity = next.velocity.to_bits();
+        if (velocity, next.acceleration.to_bits(), next.jerk.to_bits()) == (0, 0, 0) {
+            return true;
+        }
         let ahead = config.stopping_distance(next);
         let end = next.position.saturating_add(ahead);
-        if next.velocity.to_bits() >= 0 && ahead >= 0 {
-            end <= self.high || next.velocity.to_bits() == 0 && next.acceleration.to_bits() <= 0
-        } else if next.velocity.to_bits() <= 0 && ahead <= 0 {
-            end >= self.low || next.velocity.to_bits() == 0 && next.acceleration.to_bits() >= 0
-        } else {
-            // It turns: the way ends on the other side of where it is.
-            self.contains(end) || !self.contains(next.position)
-        }
+        let too_high = ahead > 0 && end > self.high || velocity > 0 && next.position > self.high;
+        let too_low = ahead < 0 && end < self.low || velocity < 0 && next.position < self.low;
+        !(too_high || too_low)
     }
 }

@@ -13,6 +13,12 @@ impl FaultSet {
         Self(self.0 | 1_u32.wrapping_shl(fault as u32))
     }
 
+    /// Of both.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
     /// True if `fault` is in it.
     #[must_use]
     pub const fn contains(self, fault: Fault) -> bool {

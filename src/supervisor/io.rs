@@ -87,4 +87,7 @@ pub struct Review<'a> {
     pub told: Command,
     /// The limits that held it back.
     pub active: ActiveLimits,
+    /// An experiment keeps the loop open: the setpoint stands where the axis is, and whether the axis moves against its
+    /// command is for the experiment to find out, within its own bounds.
+    pub open_loop: bool,
 }

@@ -80,8 +80,14 @@ impl Watch {
         let verdict = self
             .following
             .judge(&config.following, error, commanded, review.tick);
+        let against = if review.open_loop {
+            self.against = against::Against::default();
+            None
+        } else {
+            self.against.check(&config.against, told, delta, velocity)
+        };
         let found = [
-            self.against.check(&config.against, told, delta, velocity),
+            against,
             self.encoder_loss
                 .check(&config.encoder_loss, told, count as u32, delta),
             index.and_then(|latch| self.index.note(&config.index, latch.count, delta)),

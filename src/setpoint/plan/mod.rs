@@ -82,6 +82,10 @@ impl Plan {
     ///
     /// # Errors
     /// [`PlanError`] for a move that is too far or too long.
+    #[expect(
+        clippy::self_named_constructors,
+        reason = "a move from rest is known as `Profile::plan`"
+    )]
     pub fn plan(distance: Position, limits: &Limits) -> Result<Self, PlanError> {
         let plan = Self::by(State::default(), in_units(distance), limits)?;
         Ok(Self {
@@ -114,6 +118,22 @@ impl Plan {
             creep: 0,
             ticks: course.ticks,
         })
+    }
+
+    /// Stands at `position`.
+    #[must_use]
+    pub fn standing(position: Position) -> Self {
+        Self::standing_at(State::at_rest(position))
+    }
+
+    /// Stands at a state at rest.
+    #[must_use]
+    pub(super) fn standing_at(state: State) -> Self {
+        Self {
+            start: Some(state),
+            end: state.position,
+            ..Self::default()
+        }
     }
 
     /// Duration in ticks: the end is reached this many ticks after the start.

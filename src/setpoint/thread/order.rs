@@ -75,6 +75,8 @@ pub enum ThreadRefusal {
     Disabled,
     /// The axis moves, or a pass is under way.
     Moving,
+    /// Another source than planned moves is selected.
+    OtherSource,
     /// No signal comes from the spindle's encoder.
     NoSignal,
     /// The spindle does not turn.
@@ -127,6 +129,9 @@ impl fmt::Display for ThreadRefusal {
         match self {
             Self::Disabled => f.write_str("the axis is not enabled: enable it first"),
             Self::Moving => f.write_str("the axis moves: wait until it stands"),
+            Self::OtherSource => {
+                f.write_str("another source of setpoints is selected: select planned moves first")
+            }
             Self::NoSignal => {
                 f.write_str("no signal from the spindle's encoder: check its cable and supply")
             }

@@ -247,6 +247,13 @@ impl Config {
 }
 
 impl Plan {
+    /// The way from where the axis stood to the far end of the take-up.
+    #[must_use]
+    pub const fn first_leg(&self) -> &Profile {
+        let [first, _] = &self.approach;
+        first
+    }
+
     /// The line at an angle from where the run-in begins.
     pub(super) fn line(&self, angle: i64) -> Position {
         let along = i128::from(angle.wrapping_sub(self.ramp.wrapping_shr(1)));

@@ -150,6 +150,7 @@ impl Staged {
             following_error: demand.following_error.to_bits(),
             told,
             active,
+            open_loop: false,
         };
         let after = counter.count(|| permit = self.supervisor.review(&review));
         let output = counter.count(|| self.output.step(demand.command));

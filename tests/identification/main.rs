@@ -1,0 +1,6 @@
+//! Identification of simulated drives, through the axis.
+
+mod coverage;
+mod figures;
+mod refusals;
+mod support;
