@@ -16,6 +16,7 @@ mod progress;
 pub mod recording;
 pub mod report;
 pub mod sampler;
+pub mod screw;
 pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;
