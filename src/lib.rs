@@ -18,7 +18,7 @@
 //! configuration from physical units, by the conversions in [`units`].
 //!
 //! Beside the path, [`tachogenerator`] checks the encoder by a second sensor. Outside the tick,
-//! [`calibration`] learns where the encoder's edges really lie.
+//! [`calibration`] learns where the encoder's edges really lie and [`tuning`] finds the loop's parameters.
 //!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
 //! counters wrap by type and are unwrapped in one place, everything else saturates or is bounded by
@@ -51,6 +51,7 @@ pub mod encoder_map;
 pub mod estimator;
 pub mod hal;
 pub mod homing;
+pub mod identification;
 pub mod output;
 pub mod parameter_table;
 pub mod params;
@@ -59,5 +60,6 @@ pub mod setpoint;
 pub mod supervisor;
 pub mod tachogenerator;
 pub mod telemetry;
+pub mod tuning;
 pub mod uncertainty;
 pub mod units;

@@ -91,10 +91,10 @@ mod tests {
     use std::boxed::Box;
 
     use heapless::spsc::Queue;
-    use leadscrew::controller::tuning::DriveModel;
     use leadscrew::estimator::EstimatorConfig;
     use leadscrew::hal::Capture;
     use leadscrew::params::AxisParams;
+    use leadscrew::tuning::DriveModel;
 
     use super::*;
 
@@ -111,10 +111,7 @@ mod tests {
     }
 
     fn axis() -> Axis<'static> {
-        let drive = DriveModel {
-            natural_period_s: 0.09,
-            damping: 0.5,
-        };
+        let drive = DriveModel::second_order(0.09, 0.5);
         let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
         let params = AxisParams {
             controller: drive.place_poles(35.0).unwrap(),

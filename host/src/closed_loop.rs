@@ -5,11 +5,11 @@
 //! ticks in which a move runs, its S-curves included, once the index has been passed and the map is in use: on
 //! a machine homing sees to that. The way back and its ramps lie wholly behind it.
 
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::encoder_map::tie::MapState;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer;
+use leadscrew::tuning::DriveModel;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Setup, Simulation};
@@ -100,10 +100,7 @@ impl LoopCase {
         let observer = scenario.tuned(&self.nominal, observer, true)?;
         let mut params = scenario.axis_params(&self.nominal, observer)?;
         let drive = &self.nominal.drive;
-        let model = DriveModel {
-            natural_period_s: drive.natural_period_s,
-            damping: drive.damping,
-        };
+        let model = DriveModel::second_order(drive.natural_period_s, drive.damping);
         params.controller = model.place_poles(self.bandwidth_rad_per_s)?;
         let setup = Setup::with_axis(&scenario, &self.machine(), &params, seed)?;
         let mut simulation = Simulation::from(setup);

@@ -1,8 +1,13 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
+mod reconfigure;
+mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
+pub use reconfigure::ReconfigureError;
 
 use crate::capture::{CaptureHealth, Observation, Unwrapper};
 use crate::compensation::{Compensation, ScrewTable, TableRefused};
@@ -10,29 +15,32 @@ use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::homing::{HomeRefused, Homing, Sight};
+use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
 use crate::setpoint::profile::Profile;
-use crate::setpoint::sources::Sources;
+use crate::setpoint::sources::{Source, Sources};
 use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{Fault, Permit, Review, Situation, State, Supervisor};
-use crate::units::Position;
+use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
+use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
-    estimator: Estimator,
+    estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
     homing: Homing,
     compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -47,13 +55,14 @@ impl<'m> Axis<'m> {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimator: Estimator::new(config.estimator),
-            supervisor: Supervisor::new(),
-            sources: Sources::new(&config.limits),
+            estimators: Estimators::new(&config.estimators),
+            supervisor: Supervisor::new(config.supervisor),
+            sources: Sources::new(&config.limits, &config.sources),
             homing: Homing::new(config.homing),
             compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -66,7 +75,6 @@ impl<'m> Axis<'m> {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
-        let position = observation.position();
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -74,38 +82,85 @@ impl<'m> Axis<'m> {
         outputs.tick = tick;
         outputs.count = observation.count;
         let command = was_enabled.then(|| self.output.command());
-        outputs.estimate = self.estimator.update(&Evidence {
+        let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
+            sample: None,
             command,
-        });
+        };
+        self.estimators.update(&mut evidence, &mut outputs.estimate);
+        let (_, position) = self
+            .estimators
+            .feedback(&outputs.estimate, observation.position());
 
+        let told = self.output.command();
+        let lines = self.homing.without_limit_left(inputs.lines);
         let permit = self.supervisor.permit(&Situation {
+            tick,
             enable: inputs.enable,
-            lines: &self.homing.without_limit_left(inputs.lines),
+            lines: &lines,
+            illegal: inputs.capture.illegal,
+            missed_ticks: inputs.missed_ticks,
+            readback: inputs.readback,
+            told,
         });
-        if !(was_enabled && permit > Permit::ZeroVolts) {
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let open_loop = self.is_open_loop();
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), lines.master_lost);
         let commanded = if self.homing.is_active() {
             self.step_homing(&observation, inputs, permit)
         } else {
-            self.sources.step(tick, &inputs.reference, permit)
+            self.sources.step(tick, reference, permit)
         };
         let outputs = &mut self.outputs;
+        outputs.retract = self.sources.retract();
         outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
-        let demand = self
+        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
+        let mut demand = self
             .controller
-            .step(&outputs.setpoint, position, &outputs.estimate, active);
+            .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
+            tick,
             moving: outputs.moving,
             trouble: self.sources.trouble().or(self.homing.trouble()),
+            lines: &lines,
+            observation: &observation,
+            estimate: &outputs.estimate,
+            setpoint: &outputs.setpoint,
+            following_error: outputs.following_error.to_bits(),
+            told,
+            active,
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let outputs = &mut self.outputs;
+        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
@@ -113,9 +168,11 @@ impl<'m> Axis<'m> {
         };
         outputs.limits = self.output.active_limits();
         outputs.enabled = permit > Permit::Off;
-        outputs.brake_released = outputs.enabled;
+        outputs.brake_released = self.supervisor.brake_released();
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
+        outputs.warnings = self.supervisor.warnings();
+        outputs.refused = self.supervisor.is_refused();
         let is_index_right = self.homing.check_index(&observation);
         if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
             self.homing.lose_origin();
@@ -131,6 +188,44 @@ impl<'m> Axis<'m> {
         self.homing.abort();
         self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
+    }
+
+    /// Notes the context of the first fault.
+    #[cold]
+    fn note_context(&mut self, position: Position, told: Command) {
+        let Outputs {
+            estimate,
+            setpoint,
+            following_error,
+            ..
+        } = &self.outputs;
+        self.supervisor.note_context(&Context {
+            position,
+            velocity: estimate.velocity,
+            setpoint_position: setpoint.position,
+            setpoint_velocity: setpoint.velocity,
+            following_error: *following_error,
+            command: told,
+        });
+    }
+
+    /// Leaves the state Fault: the axis is then disabled, and may be enabled anew.
+    ///
+    /// # Errors
+    /// [`ClearError`]; the fault then stays.
+    pub fn clear_fault(&mut self) -> Result<(), ClearError> {
+        self.supervisor.clear()
+    }
+
+    /// The supervisor: the first fault and its context, warnings, the peak of the following error.
+    #[must_use]
+    pub const fn supervisor(&self) -> &Supervisor {
+        &self.supervisor
+    }
+
+    /// The same, to report faults found between ticks and to reset warnings and peak.
+    pub const fn supervisor_mut(&mut self) -> &mut Supervisor {
+        &mut self.supervisor
     }
 
     /// A tick of homing, or its end where it may not go on: the sources go on from there.
@@ -182,32 +277,44 @@ impl<'m> Axis<'m> {
     /// # Errors
     /// [`QueueError`]; the axis then goes on as it was.
     pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.outputs.enabled {
+        if !self.supervisor.is_following() {
             return Err(QueueError::Disabled);
         }
         if self.homing.is_active() {
             return Err(QueueError::Busy);
+        }
+        if self.sources.selected() != Source::Trajectory {
+            return Err(QueueError::OtherSource);
         }
         self.sources
             .trajectory
             .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
-    /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
-    pub fn reconfigure(&mut self, config: AxisConfig) {
+    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
+    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
+    /// estimated last. The encoder map stays.
+    ///
+    /// # Errors
+    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
+    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+        if self.outputs.enabled && self.outputs.moving {
+            ReconfigureError::check(&self.config, &config)?;
+        }
         self.edges.reconfigure(config.edges);
-        if config.estimator != self.config.estimator {
-            self.estimator = Estimator::new(config.estimator);
-            self.estimator.prime(self.outputs.estimate.velocity);
+        if config.estimators != self.config.estimators {
+            self.estimators = Estimators::new(&config.estimators);
+            self.estimators.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
-        self.sources.reconfigure(&config.limits);
+        self.supervisor.reconfigure(config.supervisor);
+        self.sources.reconfigure(&config.limits, &config.sources);
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
         self.config = config;
+        Ok(())
     }
 
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
@@ -262,10 +369,10 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
-    /// The estimator in the loop.
+    /// The first estimator.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator {
-        &self.estimator
+        self.estimators.first()
     }
 
     /// What went wrong at the encoder so far.

@@ -45,9 +45,9 @@ fn the_reversal_error_is_1_d_at_most_with_3_d_of_backlash() {
         ..
     } = figures;
     assert!(before.mean_reversal < -2.0, "{before:?}");
-    // The encoder alone tells half a discrete of either reading: what a mean over the targets does not know.
+    // At a single target the shaft stands anywhere within a count, either way; the mean over the targets tells what
+    // the compensation leaves.
     assert!(backlash.mean_reversal.abs() <= 0.5, "{backlash:?}");
-    assert!(backlash.reversal <= 1.1, "{backlash:?}");
     assert!(
         after.reversal <= 1.0 && after.positioning <= 2.0,
         "{after:?}"
@@ -55,9 +55,11 @@ fn the_reversal_error_is_1_d_at_most_with_3_d_of_backlash() {
 }
 
 #[test]
-fn four_points_a_revolution_are_too_few_and_eight_and_a_half_are_enough() {
-    // Between points h apart a wave of amplitude A and length L is missed by A·(2π·h/L)²/8: with 3.5 d once a
-    // revolution (2 d of the screw, 1.5 d of the encoder's disc) 0.24 d at 8.5 points, 1.1 d at 4.
-    let [few, enough] = [121, 256].map(|points| measured(0.0, points).after.positioning);
-    assert!(enough < 1.0 && few > enough + 0.4, "{few} d and {enough} d");
+fn two_points_a_revolution_are_too_few_and_eight_and_a_half_are_enough() {
+    // Between points h apart a wave of amplitude A and length L is missed by up to A·(2π·h/L)²/8 where h is small:
+    // 0.14 d of the screw's 2 d once a revolution at 8.5 points. The count, ±0.5 d at the point and at the target, is
+    // more than that. At two points a revolution the wave may be missed altogether, but for what the encoder's disc
+    // adds or takes off.
+    let [few, enough] = [61, 256].map(|points| measured(0.0, points).after.positioning);
+    assert!(enough < 1.0 && few > 1.5, "{few} d and {enough} d");
 }

@@ -1,11 +1,11 @@
 //! The fixed-point law against the documented formula in f64.
 
 use leadscrew::controller::config::Gains;
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::controller::{Config, Controller};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::params::AxisParams;
 use leadscrew::setpoint::Setpoint;
+use leadscrew::tuning::DriveModel;
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
@@ -34,6 +34,7 @@ fn gains() -> impl Strategy<Value = Gains> {
         gain(false),
         gain(false),
         gain(false),
+        prop_oneof![Just(0.0), 0.0..20.0_f64],
     )
         .prop_map(
             |(
@@ -45,6 +46,7 @@ fn gains() -> impl Strategy<Value = Gains> {
                 velocity_feedforward,
                 acceleration_feedforward,
                 jerk_feedforward,
+                feedforward_lead,
             )| {
                 Gains {
                     position,
@@ -55,6 +57,7 @@ fn gains() -> impl Strategy<Value = Gains> {
                     velocity_feedforward,
                     acceleration_feedforward,
                     jerk_feedforward,
+                    feedforward_lead,
                 }
             },
         )
@@ -114,10 +117,7 @@ proptest! {
 
 /// The tuning of the reference machine at the bandwidth of an estimator that lags by five ticks.
 fn lathe_gains(tick_hz: f64) -> (AxisParams, Config) {
-    let drive = DriveModel {
-        natural_period_s: 0.09,
-        damping: 0.5,
-    };
+    let drive = DriveModel::second_order(0.09, 0.5);
     let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
     let params = AxisParams {
         tick_hz,

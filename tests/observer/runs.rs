@@ -1,9 +1,9 @@
 //! Closed loops with the observer in them.
 
 use leadscrew::axis::{Axis, Outputs};
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
+use leadscrew::tuning::DriveModel;
 use leadscrew::units::AxisScale;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
@@ -81,10 +81,10 @@ impl Loop {
 
     pub fn run_with(&self, estimator: EstimatorConfig) -> (Vec<Tick>, Axis<'static>) {
         let mut params = self.scenario.axis_params(&self.nominal, estimator).unwrap();
-        let drive = DriveModel {
-            natural_period_s: self.nominal.drive.natural_period_s,
-            damping: self.nominal.drive.damping,
-        };
+        let drive = DriveModel::second_order(
+            self.nominal.drive.natural_period_s,
+            self.nominal.drive.damping,
+        );
         params.controller = drive.place_poles(self.bandwidth_rad_per_s).unwrap();
         let config = params.validate().unwrap();
         let script = Script::new(&self.scenario, params.motion.counts_per_mm, &config).unwrap();

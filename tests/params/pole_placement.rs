@@ -1,16 +1,15 @@
 //! Pole placement puts the poles where it says, and its feedforward undoes the drive.
 
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::params::ControllerParams;
+use leadscrew::tuning::DriveModel;
 use proptest::prelude::*;
 
 use crate::seeded::seeded;
 
 /// Drives and bandwidths of retrofits: a natural period of 20 to 200 ms, damping from 0.3 to 1.2.
 fn drives() -> impl Strategy<Value = (DriveModel, f64)> {
-    let model = (0.02..0.2_f64, 0.3..1.2_f64).prop_map(|(natural_period_s, damping)| DriveModel {
-        natural_period_s,
-        damping,
+    let model = (0.02..0.2_f64, 0.3..1.2_f64).prop_map(|(natural_period_s, damping)| {
+        DriveModel::second_order(natural_period_s, damping)
     });
     (model, 5.0..200.0_f64)
 }
@@ -96,10 +95,7 @@ proptest! {
 #[test]
 fn the_feedforward_of_a_placed_loop_is_the_inverse_of_the_drive() {
     // v = t³/6 needs u = v + (2ζ/ω)v′ + v″/ω²; put through the drive's own equation nothing is left.
-    let drive = DriveModel {
-        natural_period_s: 0.09,
-        damping: 0.5,
-    };
+    let drive = DriveModel::second_order(0.09, 0.5);
     let gains = drive.place_poles(35.0).unwrap();
     let omega = std::f64::consts::TAU / 0.09;
     for time in [0.0, 0.1, 0.5] {
@@ -115,12 +111,9 @@ fn the_feedforward_of_a_placed_loop_is_the_inverse_of_the_drive() {
 #[test]
 fn drives_and_bandwidths_that_make_no_sense_are_refused() {
     let place = |natural_period_s, damping, bandwidth| {
-        DriveModel {
-            natural_period_s,
-            damping,
-        }
-        .place_poles(bandwidth)
-        .unwrap_err()
+        DriveModel::second_order(natural_period_s, damping)
+            .place_poles(bandwidth)
+            .unwrap_err()
     };
     for (error, name, min, max) in [
         (place(0.0, 0.5, 35.0), "natural_period_s", 1e-4, 10.0),

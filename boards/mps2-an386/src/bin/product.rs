@@ -10,12 +10,12 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{entry, exception};
 use leadscrew::axis::{Axis, Inputs};
-use leadscrew::controller::tuning::DriveModel;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Capture;
 use leadscrew::params::{AxisParams, MotionParams, OutputParams, ParamError};
 use leadscrew::setpoint::profile::Profile;
 use leadscrew::telemetry::Record;
+use leadscrew::tuning::DriveModel;
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
@@ -61,10 +61,7 @@ fn main() -> ! {
 /// An axis from parameters that come from outside.
 fn configured() -> Result<Axis<'static>, ParamError> {
     let number = || f64::from(outside());
-    let drive = DriveModel {
-        natural_period_s: number(),
-        damping: number(),
-    };
+    let drive = DriveModel::second_order(number(), number());
     let estimator = match outside() % 5 {
         0 => EstimatorConfig::by_name("difference")?,
         1 => EstimatorConfig::by_name("exponential")?,

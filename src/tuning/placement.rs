@@ -5,17 +5,9 @@
 //! s⁴ + (2ζω + ω²G·ka)s³ + ω²(1 + G·kv)s² + ω²G·kp·s + ω²G·ki. Setting it to (s + p)⁴ gives the gains;
 //! the feedforward is the inverse of the drive: (v + (2ζ/ω)·a + j/ω²)/G.
 
+use super::DriveModel;
 use crate::params::ControllerParams;
 use crate::units::{RangeError, checked};
-
-/// A velocity drive as identified or as its data sheet has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveModel {
-    /// Natural period of the velocity response, s.
-    pub natural_period_s: f64,
-    /// Damping ratio ζ of the velocity response.
-    pub damping: f64,
-}
 
 impl DriveModel {
     /// Gains that put all four poles of the loop at `bandwidth_rad_per_s`.
