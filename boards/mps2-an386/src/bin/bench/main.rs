@@ -7,6 +7,7 @@
 
 mod adversary;
 mod calibration;
+mod compensation;
 mod edges;
 mod one_stamp;
 mod samples;
@@ -43,6 +44,7 @@ fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     adversary::run(counter)?;
     edges::run(counter)?;
     calibration::run(counter);
+    compensation::run(counter)?;
     simulator::run(counter)
 }
 
