@@ -202,12 +202,12 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            sources: self.sources.quantise(scale, limits, edges)?,
             supervisor: self.supervisor.quantise(
                 scale,
                 full_velocity,
                 scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
             )?,
-            sources: self.sources.quantise(scale, limits, edges)?,
         })
     }
 }

@@ -1,9 +1,11 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
 mod reconfigure;
 mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 
@@ -16,6 +18,7 @@ use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::homing::{HomeRefused, Homing, Sight};
+use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
@@ -37,6 +40,7 @@ pub struct Axis<'m> {
     compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -58,6 +62,7 @@ impl<'m> Axis<'m> {
             compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -102,12 +107,13 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
+        let open_loop = self.is_open_loop();
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let reference = &inputs.reference;
         self.sources
-            .read_master(reference.master.as_ref(), inputs.lines.master_lost);
+            .read_master(reference.master.as_ref(), lines.master_lost);
         let commanded = if self.homing.is_active() {
             self.step_homing(&observation, inputs, permit)
         } else {
@@ -119,10 +125,19 @@ impl<'m> Axis<'m> {
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
         let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
-        let demand = self
+        let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
@@ -136,7 +151,11 @@ impl<'m> Axis<'m> {
             following_error: outputs.following_error.to_bits(),
             told,
             active,
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
@@ -261,11 +280,11 @@ impl<'m> Axis<'m> {
         if !self.supervisor.is_following() {
             return Err(QueueError::Disabled);
         }
+        if self.homing.is_active() || self.sources.is_threading() {
+            return Err(QueueError::Busy);
+        }
         if self.sources.selected() != Source::Trajectory {
             return Err(QueueError::OtherSource);
-        }
-        if self.homing.is_active() {
-            return Err(QueueError::Busy);
         }
         self.sources
             .trajectory
@@ -281,6 +300,9 @@ impl<'m> Axis<'m> {
     pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
         if self.outputs.enabled && self.outputs.moving {
             ReconfigureError::check(&self.config, &config)?;
+        }
+        if self.sources.is_tied() && config.sources != self.config.sources {
+            return Err(ReconfigureError::Sources);
         }
         self.edges.reconfigure(config.edges);
         if config.estimators != self.config.estimators {

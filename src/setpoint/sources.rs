@@ -146,8 +146,21 @@ impl Sources {
         }
     }
 
-    const fn is_threading(&self) -> bool {
+    /// True while a pass of a thread is under way, its approach included.
+    #[must_use]
+    pub const fn is_threading(&self) -> bool {
         !matches!(self.thread.phase(), ThreadPhase::Idle)
+    }
+
+    /// True while another parameter would move the axis: in a pass of a thread, with a gear that is not open, and in motion by
+    /// pulses or an analog command.
+    #[must_use]
+    pub const fn is_tied(&self) -> bool {
+        match self.selected {
+            Source::Trajectory => self.is_threading(),
+            Source::Gearing => !matches!(self.gearing.gear(), Gear::Open),
+            Source::StepDir | Source::Analog => self.is_moving(),
+        }
     }
 
     /// True while a stop runs, or while it is not yet allowed to move after one.

@@ -1,52 +1,33 @@
 //! The whole step: enabling, moves, and a change of configuration.
 
 use leadscrew::axis::{Axis, Inputs};
-use leadscrew::compensation::CompensationParams;
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
-use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::paths::{self, Choice};
+use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
-use leadscrew::homing::HomingParams;
 use leadscrew::output;
-use leadscrew::params::AxisConfig;
+use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::profile::{Limits, Profile};
-use leadscrew::setpoint::sources::SourceParams;
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::supervisor::SupervisorParams;
-use leadscrew::uncertainty::EdgeErrors;
-use leadscrew::units::{AxisScale, Command, Position};
+use leadscrew::units::{Command, Position};
 
 use crate::signals::config as controller_config;
 
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
-    let limits = Limits::new(1000.0, 100.0, 3.0).unwrap();
-    let scale = AxisScale::new(1000.0, 1000.0).unwrap();
-    let edges = EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap();
+    let estimator = EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator]);
+    let params = AxisParams {
+        // Captures here are such as no machine gives.
+        supervisor: SupervisorParams::widest(),
+        ..AxisParams::new(estimator.unwrap().unwrap())
+    };
     AxisConfig {
-        edges,
-        sources: SourceParams::default()
-            .quantise(scale, limits, edges)
-            .unwrap(),
-        scale,
-        estimators: paths::Config::single(
-            EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
-                .unwrap()
-                .unwrap(),
-        ),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
-        limits,
-        compensation: CompensationParams::default()
-            .quantise(scale, &limits)
-            .unwrap(),
-        // Captures here are such as no machine gives.
-        supervisor: SupervisorParams::widest()
-            .quantise(scale, 160.0, 150.0)
-            .unwrap(),
-        homing: HomingParams::default().quantise(scale, &limits).unwrap(),
+        limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        ..params.validate().unwrap()
     }
 }
 

@@ -1,10 +1,14 @@
 //! Passes of threads: what is refused, what keeps the phase, and what ends them.
 
-use leadscrew::axis::Outputs;
+use leadscrew::axis::{Outputs, ReconfigureError};
+use leadscrew::setpoint::gearing::GearingParams;
+use leadscrew::setpoint::profile::Profile;
 use leadscrew::setpoint::thread::{
     SpindleTrouble, SpindleWay, ThreadOrder, ThreadPhase, ThreadRefusal,
 };
+use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::supervisor::Fault;
+use leadscrew::units::Position;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::spindle::SpindleParams;
@@ -129,6 +133,21 @@ fn what_cannot_be_cut_is_refused_before_anything_moves() {
     assert_eq!(
         turning.axis.arm_thread(&order()),
         Err(ThreadRefusal::Moving)
+    );
+    // Nor is the pass disturbed from outside.
+    let mut config = *turning.axis.config();
+    let profile = Profile::plan(Position::from_num(10), &config.limits).unwrap();
+    let soon = turning.step().tick + 5;
+    assert_eq!(turning.axis.queue(&profile, soon), Err(QueueError::Busy));
+    config.sources.gearing = GearingParams {
+        gear_axis_counts: 2.0,
+        gear_master_counts: 1.0,
+    }
+    .quantise()
+    .unwrap();
+    assert_eq!(
+        turning.axis.reconfigure(config),
+        Err(ReconfigureError::Sources)
     );
 }
 

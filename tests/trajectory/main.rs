@@ -4,6 +4,7 @@ mod evaluation;
 mod follower;
 mod moves;
 mod oracle;
+mod plans;
 mod queue;
 mod refusals;
 #[path = "../support/seeded.rs"]

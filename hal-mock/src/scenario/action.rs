@@ -32,6 +32,10 @@ pub enum Ask {
     Enable,
     /// Takes it out of control.
     Disable,
+    /// Clears the fault that is latched.
+    ClearFault,
+    /// Forgets the warnings.
+    ClearWarnings,
     /// Moves to a position.
     MoveTo {
         /// Where to, mm.
@@ -82,6 +86,10 @@ pub enum Trouble {
     EmergencyStop,
     /// The line receiver of the second encoder sees no signal.
     MasterLost,
+    /// The encoder's index line is broken.
+    IndexLost,
+    /// The parameter store is found to be corrupt.
+    StoreCorrupt,
     /// The axis misses ticks, once: the machine goes on under the last command.
     MissedTicks {
         /// How many.

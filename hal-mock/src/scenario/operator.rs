@@ -55,6 +55,8 @@ impl Operator {
         match *ask {
             Ask::Enable => self.enable = true,
             Ask::Disable => self.enable = false,
+            Ask::ClearFault => axis.clear_fault().map_err(ScenarioError::Clear)?,
+            Ask::ClearWarnings => axis.supervisor_mut().clear_warnings(),
             Ask::MoveTo {
                 position_mm,
                 feed_mm_per_min,

@@ -77,6 +77,9 @@ impl<'s> Runner<'s> {
             self.next += 1;
         }
         self.world.step(&self.outputs);
+        self.axis
+            .supervisor_mut()
+            .set_store_corrupt(self.world.store_corrupt());
         let inputs = self.world.inputs(self.operator.enables());
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));

@@ -20,6 +20,10 @@ pub struct World {
     timer_hz: f64,
     /// Troubles that last, each with the first tick without it.
     lasting: [Option<(Trouble, u32)>; MOST_TROUBLES],
+    /// The line of the index is broken.
+    index_lost: bool,
+    /// The parameter store is corrupt.
+    store_corrupt: bool,
     tick: u32,
 }
 
@@ -33,6 +37,8 @@ impl World {
             board: Board::new(&plant.board, &plant.machine, tick_hz, seed)?,
             timer_hz: plant.machine.encoder.encoder.timer_hz,
             lasting: [None; MOST_TROUBLES],
+            index_lost: false,
+            store_corrupt: false,
             tick: 0,
         })
     }
@@ -85,13 +91,24 @@ impl World {
     /// What the axis sees.
     #[must_use]
     pub fn inputs(&self, enable: bool) -> Inputs<'_> {
-        self.board.inputs(enable, Reference::default())
+        let mut inputs = self.board.inputs(enable, Reference::default());
+        if self.index_lost {
+            inputs.capture.index = None;
+        }
+        inputs
+    }
+
+    /// The parameter store is corrupt.
+    #[must_use]
+    pub const fn store_corrupt(&self) -> bool {
+        self.store_corrupt
     }
 
     /// Makes of the board what the troubles that last make of it.
     fn settle(&mut self) {
         let mut wrong = board::Trouble::default();
         let mut slip = 0.0;
+        (self.index_lost, self.store_corrupt) = (false, false);
         for (trouble, _) in self.lasting.iter().flatten() {
             match *trouble {
                 Trouble::CouplingSlip { share } => slip = share,
@@ -108,6 +125,8 @@ impl World {
                 }
                 Trouble::EmergencyStop => wrong.emergency_stop = true,
                 Trouble::MasterLost => wrong.master_lost = true,
+                Trouble::IndexLost => self.index_lost = true,
+                Trouble::StoreCorrupt => self.store_corrupt = true,
                 Trouble::Encoder(_) | Trouble::MissedTicks { .. } => {}
             }
         }

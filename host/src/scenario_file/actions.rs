@@ -76,6 +76,12 @@ impl Spec {
         }
     }
 
+    /// True for what goes wrong, false for what is asked of the axis.
+    #[must_use]
+    pub const fn is_trouble(&self) -> bool {
+        !matches!(self.make, Make::Ask(_))
+    }
+
     /// True for what lasts for a time.
     #[must_use]
     pub const fn lasts(&self) -> bool {
@@ -168,6 +174,15 @@ pub const ACTIONS: &[Spec] = &[
         Ask::Enable
     }),
     Spec::ask("disable", "takes it out of control", &[], |_| Ask::Disable),
+    Spec::ask(
+        "clear-fault",
+        "clears the fault that is latched, once the axis stands and is disabled",
+        &[],
+        |_| Ask::ClearFault,
+    ),
+    Spec::ask("clear-warnings", "forgets the warnings", &[], |_| {
+        Ask::ClearWarnings
+    }),
     Spec::ask(
         "move-to",
         "moves to a position, from where the axis stood at the start",
@@ -318,6 +333,18 @@ pub const ACTIONS: &[Spec] = &[
         "the line receiver of the second encoder sees no signal",
         &[],
         |_| Trouble::MasterLost,
+    ),
+    Spec::trouble(
+        "index-lost",
+        "the encoder's index line is broken",
+        &[],
+        |_| Trouble::IndexLost,
+    ),
+    Spec::trouble(
+        "store-corrupt",
+        "the parameter store is found to be corrupt",
+        &[],
+        |_| Trouble::StoreCorrupt,
     ),
     Spec::event(
         "missed-ticks",

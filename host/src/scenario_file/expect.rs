@@ -201,6 +201,12 @@ pub const FAULT: Key = Key {
     value: Value::Word(&FAULT_WORDS),
     default: Some(0.0),
 };
+/// A warning of the run.
+pub const WARNING: Key = Key {
+    name: "warning",
+    what: "a warning that must come; left out: it does not matter",
+    ..FAULT
+};
 /// The state at the end.
 pub const FINAL_STATE: Key = Key {
     name: "final_state",
@@ -216,6 +222,8 @@ pub struct Expectations {
     pub limits: Vec<(&'static Limit, f64)>,
     /// The first fault, or none.
     pub fault: Option<Fault>,
+    /// Warnings that must come.
+    pub warnings: Vec<Fault>,
     /// The state at the end, if it matters.
     pub final_state: Option<State>,
 }
@@ -227,7 +235,7 @@ impl Expectations {
         let keys: Vec<&Key> = LIMITS
             .iter()
             .map(|limit| &limit.key)
-            .chain([&FAULT, &FINAL_STATE])
+            .chain([&FAULT, &FINAL_STATE, &WARNING])
             .collect();
         let values = read_all(table, &keys, &[], "[expect]", 0..0)?;
         let (limits, words) = values.split_at(LIMITS.len());
@@ -240,11 +248,14 @@ impl Expectations {
             })
             .filter(|(_, value)| !value.is_nan());
         let place = |value: f64| (!value.is_nan()).then_some(value as usize);
+        let fault = |value: f64| {
+            let found = FAULTS.get(place(value)?.checked_sub(1)?);
+            found.map(|(fault, _)| *fault)
+        };
         Ok(Self {
             limits: stated.collect(),
-            fault: place(words[0])
-                .and_then(|place| FAULTS.get(place.checked_sub(1)?))
-                .map(|(fault, _)| *fault),
+            fault: fault(words[0]),
+            warnings: fault(words[2]).into_iter().collect(),
             final_state: place(words[1])
                 .and_then(|place| STATES.get(place))
                 .map(|(state, _)| *state),

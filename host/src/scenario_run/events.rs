@@ -1,6 +1,6 @@
 //! What happened in a run, in order.
 
-use leadscrew::supervisor::{Fault, State};
+use leadscrew::supervisor::{Fault, FaultSet, State};
 
 use super::Record;
 
@@ -22,6 +22,8 @@ pub enum What {
     State(State),
     /// A fault stopped the axis.
     Fault(Fault),
+    /// A fault that only warns, or the warning before one.
+    Warning(Fault),
     /// The latched fault was cleared.
     Cleared,
 }
@@ -42,6 +44,7 @@ impl Event {
             })
             .collect();
         let (mut state, mut fault) = (State::Disabled, None);
+        let mut warnings = FaultSet::default();
         for (tick, found) in record.ticks.iter().enumerate() {
             let outputs = &found.outputs;
             let mut push = |what| events.push(Self { tick, what });
@@ -49,6 +52,12 @@ impl Event {
                 fault = outputs.fault;
                 push(fault.map_or(What::Cleared, What::Fault));
             }
+            let is_new =
+                |fault: &&Fault| outputs.warnings.contains(**fault) && !warnings.contains(**fault);
+            for &warning in Fault::ALL.iter().filter(is_new) {
+                push(What::Warning(warning));
+            }
+            warnings = outputs.warnings;
             if outputs.state != state {
                 state = outputs.state;
                 push(What::State(state));

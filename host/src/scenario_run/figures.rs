@@ -1,6 +1,6 @@
 //! Figures of a run.
 
-use leadscrew::supervisor::{Fault, State};
+use leadscrew::supervisor::{Fault, FaultSet, FirstFault, State};
 use leadscrew_hal_mock::scenario::{Action, Timed};
 
 use super::{Record, Tick};
@@ -29,6 +29,8 @@ pub struct Figures {
     pub output_peak: f64,
     /// Actions that were refused.
     pub refused: usize,
+    /// Warnings of the run.
+    pub warnings: FaultSet,
     /// What each fault led to.
     pub stops: Vec<Stop>,
     /// State at the end.
@@ -40,6 +42,8 @@ pub struct Figures {
 pub struct Stop {
     /// The fault.
     pub fault: Fault,
+    /// What was found and where the axis was; `None` if it was not noted.
+    pub first: Option<FirstFault>,
     /// The tick in which it was found.
     pub tick: usize,
     /// Since the last trouble that began: s, and way of the shaft, mm; `None` without any trouble.
@@ -86,6 +90,7 @@ impl Figures {
             let way = (found.shaft.position - first.shaft.position) / record.counts_per_mm;
             let (low, high) = figures.travel_mm;
             figures.travel_mm = (low.min(way), high.max(way));
+            figures.warnings = figures.warnings.union(outputs.warnings);
             let output: f64 = outputs.command.to_num();
             figures.output_peak = figures.output_peak.max(output.abs());
         }
@@ -155,6 +160,11 @@ fn stop(record: &Record, timeline: &[Timed], tick: usize, fault: Fault) -> Stop 
         .position(|found| found.outputs.command == 0);
     Stop {
         fault,
+        first: record
+            .faults
+            .iter()
+            .find(|first| first.tick as usize == tick)
+            .copied(),
         tick,
         detected: troubles
             .next_back()

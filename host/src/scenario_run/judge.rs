@@ -39,6 +39,20 @@ pub fn judge(expect: &Expectations, figures: &Figures) -> Vec<Verdict> {
             met: figures.final_state == state,
         });
     }
+    for warning in &expect.warnings {
+        let met = figures.warnings.contains(*warning);
+        verdicts.push(Verdict {
+            name: "warning",
+            expected: fault_name(*warning).to_owned(),
+            found: if met {
+                fault_name(*warning)
+            } else {
+                "none of it"
+            }
+            .to_owned(),
+            met,
+        });
+    }
     for (limit, value) in &expect.limits {
         let found = figures.value(limit.figure);
         let (sign, met): (_, fn(f64, f64) -> bool) = match limit.bound {
@@ -59,7 +73,8 @@ pub fn judge(expect: &Expectations, figures: &Figures) -> Vec<Verdict> {
 }
 
 /// A figure to four digits behind the point at most.
-fn short(value: f64) -> String {
+#[must_use]
+pub fn short(value: f64) -> String {
     let rounded = (value * 1e4).round() / 1e4;
     format!("{}", rounded + 0.0)
 }

@@ -6,6 +6,7 @@ mod judge;
 
 use leadscrew::axis::Outputs;
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::supervisor::FirstFault;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::scenario::{Happening, Runner, Scenario, ScenarioError};
@@ -13,7 +14,7 @@ use thiserror::Error;
 
 pub use self::events::{Event, What};
 pub use self::figures::{Figures, Stop};
-pub use self::judge::{Verdict, judge};
+pub use self::judge::{Verdict, judge, short};
 
 use crate::calibration::{CalibrationError, Procedure, learn_simulated};
 use crate::progress::Progress;
@@ -36,6 +37,8 @@ pub struct Record {
     pub ticks: Vec<Tick>,
     /// What became of each action, in the order of the timeline.
     pub actions: Vec<Happening>,
+    /// Every fault that was latched, with its context.
+    pub faults: Vec<FirstFault>,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -83,9 +86,14 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
     runner.axis.set_map(map);
     let mut progress = Progress::new("simulating", u64::from(runner.ticks()));
     let mut ticks = Vec::with_capacity(runner.ticks() as usize);
-    let mut actions = Vec::new();
+    let (mut actions, mut faults) = (Vec::new(), Vec::new());
     while let Some(outputs) = runner.step(|happening| actions.push(happening)) {
         let outputs = *outputs;
+        let latched = runner.axis.supervisor().first_fault();
+        match latched {
+            Some(first) if first.tick == outputs.tick => faults.push(*first),
+            _ => {}
+        }
         let machine = &runner.world.board.machine;
         ticks.push(Tick {
             outputs,
@@ -97,6 +105,7 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
     Ok(Record {
         ticks,
         actions,
+        faults,
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
         counts_per_mm: scenario.plant().machine.mount.counts_per_mm,

@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use leadscrew::supervisor::Context;
 use serde::Serialize;
 
 use crate::fault_names::{fault_name, state_name};
 use crate::report::figure_or_dash;
 use crate::scenario_file::ScenarioFile;
-use crate::scenario_run::{Event, Figures, Record, Stop, Verdict, What};
+use crate::scenario_run::{Event, Figures, Record, Stop, Verdict, What, short};
 
 /// The report of a run.
 #[derive(Serialize)]
@@ -40,7 +41,7 @@ pub(super) struct Report {
 struct EventFigures {
     tick: usize,
     time_s: f64,
-    /// `action`, `state`, `fault` or `cleared`.
+    /// `action`, `state`, `warning`, `fault` or `cleared`.
     event: &'static str,
     /// Name of the action, the state or the fault.
     name: String,
@@ -66,6 +67,18 @@ struct StopFigures {
     fault: &'static str,
     number: u8,
     time_s: f64,
+    /// State before it; null if no context was noted, as all that follows.
+    state: Option<&'static str>,
+    /// What was seen, and what is allowed, in the unit of the table of faults.
+    value: Option<f64>,
+    limit: Option<f64>,
+    position_d: Option<f64>,
+    velocity_d_per_tick: Option<f64>,
+    setpoint_d: Option<f64>,
+    setpoint_velocity_d_per_tick: Option<f64>,
+    following_error_d: Option<f64>,
+    command: Option<f64>,
+    /// Since the last trouble that began.
     detected_after_s: Option<f64>,
     detected_after_mm: Option<f64>,
     zero_output_after_ticks: Option<usize>,
@@ -75,10 +88,21 @@ struct StopFigures {
 
 impl StopFigures {
     fn new(stop: &Stop, tick_hz: f64) -> Self {
+        let first = stop.first.as_ref();
+        let context = |value: fn(&Context) -> f64| first.map(|first| value(&first.context));
         Self {
             fault: fault_name(stop.fault),
             number: stop.fault as u8,
             time_s: stop.tick as f64 / tick_hz,
+            state: first.map(|first| state_name(first.state)),
+            value: first.map(|first| first.trip.value.to_num()),
+            limit: first.map(|first| first.trip.limit.to_num()),
+            position_d: context(|context| context.position.to_num()),
+            velocity_d_per_tick: context(|context| context.velocity.to_num()),
+            setpoint_d: context(|context| context.setpoint_position.to_num()),
+            setpoint_velocity_d_per_tick: context(|context| context.setpoint_velocity.to_num()),
+            following_error_d: context(|context| context.following_error.to_num()),
+            command: context(|context| context.command.to_num()),
             detected_after_s: stop.detected.map(|detected| detected.0),
             detected_after_mm: stop.detected.map(|detected| detected.1),
             zero_output_after_ticks: stop.zero_output_ticks,
@@ -96,8 +120,14 @@ impl StopFigures {
         let detected = pair(self.detected_after_s, self.detected_after_mm)
             .map(|text| format!("found after {text}; "))
             .unwrap_or_default();
+        let seen = self
+            .value
+            .zip(self.limit)
+            .map_or_else(String::new, |(value, limit)| {
+                format!(" ({} against {})", short(value), short(limit))
+            });
         format!(
-            "{}: {detected}zero output after {}; stopped after {}\n",
+            "{}{seen}: {detected}zero output after {}; stopped after {}\n",
             self.fault,
             or_not(
                 self.zero_output_after_ticks
@@ -114,6 +144,7 @@ impl EventFigures {
             What::Action(index, refused) => ("action", file.name(*index), None, refused.clone()),
             What::State(state) => ("state", state_name(*state), None, None),
             What::Fault(fault) => ("fault", fault_name(*fault), Some(*fault as u8), None),
+            What::Warning(fault) => ("warning", fault_name(*fault), Some(*fault as u8), None),
             What::Cleared => ("cleared", "fault", None, None),
         };
         Self {
