@@ -11,6 +11,7 @@ mod edges;
 mod one_stamp;
 mod samples;
 mod simulator;
+mod sources;
 mod staged;
 mod standard_move;
 
@@ -40,6 +41,7 @@ fn main() -> ! {
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
     one_stamp::run(counter)?;
+    sources::run(counter)?;
     adversary::run(counter)?;
     edges::run(counter)?;
     calibration::run(counter);
