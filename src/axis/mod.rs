@@ -283,6 +283,9 @@ impl<'m> Axis<'m> {
         if self.outputs.enabled && self.outputs.moving {
             ReconfigureError::check(&self.config, &config)?;
         }
+        if self.sources.is_tied() && config.sources != self.config.sources {
+            return Err(ReconfigureError::Sources);
+        }
         self.edges.reconfigure(config.edges);
         if config.estimators != self.config.estimators {
             self.estimators = Estimators::new(&config.estimators);

@@ -12,6 +12,7 @@ mod edges;
 mod one_stamp;
 mod samples;
 mod simulator;
+mod sources;
 mod staged;
 mod standard_move;
 
@@ -41,6 +42,7 @@ fn main() -> ! {
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
     one_stamp::run(counter)?;
+    sources::run(counter)?;
     adversary::run(counter)?;
     edges::run(counter)?;
     calibration::run(counter);
