@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::controller::params::LawParams;
-pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
+pub use crate::controller::params::{CalmParams, ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
@@ -40,6 +40,8 @@ pub struct AxisParams {
     pub filter: FilterParams,
     /// Its feedforward against friction.
     pub friction: FrictionParams,
+    /// Its gains for slow motion and rest.
+    pub calm: CalmParams,
     /// Limits of the output.
     pub output: OutputParams,
 }
@@ -65,6 +67,8 @@ parameter_table! {
     pub struct OutputParams {
         /// Largest output
         limit: 1.0, "of full command", 0.0001..=1.0;
+        /// Step of command that the drive answers to; 0 for none. The mean of the steps put out is finer
+        resolution: 0.0, "of full command", 0.0..=0.1;
         /// Fastest change of the output
         slew_per_s: 500.0, "of full command a second", 0.1..=1e6;
     }
@@ -142,6 +146,7 @@ impl AxisParams {
             controller: ControllerParams::default(),
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
+            calm: CalmParams::default(),
             output: OutputParams::default(),
         }
     }
@@ -166,6 +171,7 @@ impl AxisParams {
                 controller: &self.controller,
                 filter: &self.filter,
                 friction: &self.friction,
+                calm: &self.calm,
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
@@ -198,9 +204,9 @@ impl MotionParams {
 impl OutputParams {
     fn quantise(&self, scale: AxisScale) -> Result<output::Config, ParamError> {
         self.check()?;
-        Ok(output::Config::new(
-            self.limit,
-            (self.slew_per_s / scale.tick_hz()).min(2.0),
-        )?)
+        Ok(
+            output::Config::new(self.limit, (self.slew_per_s / scale.tick_hz()).min(2.0))?
+                .with_resolution(self.resolution)?,
+        )
     }
 }

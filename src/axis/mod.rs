@@ -20,7 +20,7 @@ use crate::setpoint::profile::Profile;
 use crate::setpoint::sources::Sources;
 use crate::setpoint::trajectory::QueueError;
 use crate::supervisor::{Permit, Review, Situation, Supervisor};
-use crate::units::Position;
+use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map lives.
 #[derive(Clone, Debug)]
@@ -71,7 +71,9 @@ impl<'m> Axis<'m> {
         let was_enabled = outputs.enabled;
         outputs.tick = tick;
         outputs.count = observation.count;
-        let command = was_enabled.then(|| self.output.command());
+        // What goes against friction does not move the drive that an observer counts on.
+        let command =
+            was_enabled.then(|| (self.output.command()).saturating_sub(self.controller.friction()));
         let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
@@ -184,6 +186,12 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// What of the last command goes against friction.
+    #[must_use]
+    pub const fn friction(&self) -> Command {
+        self.controller.friction()
     }
 
     /// The configuration in force.
