@@ -7,8 +7,6 @@ use crate::units::{Command, RangeError, checked};
 pub struct Config {
     limit: i32,
     slew: i32,
-    /// Step of command that the drive answers to, Q.30; 0 for none.
-    step: i32,
 }
 
 impl Config {
@@ -22,22 +20,6 @@ impl Config {
         Ok(Self {
             limit: Command::saturating_from_num(limit).to_bits(),
             slew: Command::saturating_from_num(slew).to_bits(),
-            step: 0,
-        })
-    }
-
-    /// The same for a drive that answers to steps of `resolution`, in fractions of full command; 0: to anything.
-    ///
-    /// Only whole steps are put out, and what one leaves goes to the next tick: the mean is right to an LSB
-    /// although the drive is not.
-    ///
-    /// # Errors
-    /// [`RangeError`] unless 0 ≤ `resolution` ≤ 0.1.
-    pub fn with_resolution(self, resolution: f64) -> Result<Self, RangeError> {
-        let resolution = checked("output_resolution", resolution, 0.0, 0.1)?;
-        Ok(Self {
-            step: Command::saturating_from_num(resolution).to_bits(),
-            ..self
         })
     }
 }
@@ -58,8 +40,6 @@ pub struct ActiveLimits {
 pub struct Output {
     config: Config,
     command: i32,
-    /// What the whole steps have left over.
-    left: i32,
     active: ActiveLimits,
 }
 
@@ -70,7 +50,6 @@ impl Output {
         Self {
             config,
             command: 0,
-            left: 0,
             active: ActiveLimits {
                 high: false,
                 low: false,
@@ -99,7 +78,6 @@ impl Output {
     /// Zero at once, without slew: the axis is off.
     pub const fn off(&mut self) -> Command {
         self.command = 0;
-        self.left = 0;
         self.active = ActiveLimits {
             high: false,
             low: false,
@@ -110,14 +88,14 @@ impl Output {
 
     /// Limits a demand, first in size, then in its change since the last tick.
     pub const fn step(&mut self, demand: Command) -> Command {
-        let Config { limit, slew, step } = self.config;
+        let Config { limit, slew } = self.config;
         let demand = demand.to_bits();
         let in_range = bounded(demand, limit.wrapping_neg(), limit);
         // Where an end of the window saturates it is beyond any limit.
         let lowest = self.command.saturating_sub(slew);
         let highest = self.command.saturating_add(slew);
         let command = bounded(in_range, lowest, highest);
-        self.command = self.whole_steps(command, step);
+        self.command = command;
         self.active = ActiveLimits {
             high: false,
             low: false,
@@ -130,27 +108,7 @@ impl Output {
                 slew: in_range != command,
             };
         }
-        Command::from_bits(self.command)
-    }
-
-    /// The whole steps in `command` and what was left over, which may pass the slew by a step.
-    #[inline]
-    const fn whole_steps(&mut self, command: i32, step: i32) -> i32 {
-        if step == 0 {
-            return command;
-        }
-        let limit = self.config.limit;
-        let wanted = bounded(
-            command.saturating_add(self.left),
-            limit.wrapping_neg(),
-            limit,
-        );
-        let Some(rest) = wanted.checked_rem(step) else {
-            return command;
-        };
-        // Towards zero, so that no limit is passed.
-        self.left = rest;
-        wanted.wrapping_sub(rest)
+        Command::from_bits(command)
     }
 }
 

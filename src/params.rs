@@ -67,8 +67,6 @@ parameter_table! {
     pub struct OutputParams {
         /// Largest output
         limit: 1.0, "of full command", 0.0001..=1.0;
-        /// Step of command that the drive answers to; 0 for none. The mean of the steps put out is finer
-        resolution: 0.0, "of full command", 0.0..=0.1;
         /// Fastest change of the output
         slew_per_s: 500.0, "of full command a second", 0.1..=1e6;
     }
@@ -204,9 +202,9 @@ impl MotionParams {
 impl OutputParams {
     fn quantise(&self, scale: AxisScale) -> Result<output::Config, ParamError> {
         self.check()?;
-        Ok(
-            output::Config::new(self.limit, (self.slew_per_s / scale.tick_hz()).min(2.0))?
-                .with_resolution(self.resolution)?,
-        )
+        Ok(output::Config::new(
+            self.limit,
+            (self.slew_per_s / scale.tick_hz()).min(2.0),
+        )?)
     }
 }

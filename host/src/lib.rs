@@ -20,5 +20,6 @@ pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;
 pub mod tacho_watch;
+pub mod tracking;
 pub mod truth;
 mod whole_file;

@@ -65,7 +65,9 @@ pub struct Calm {
     pub gains: Gains,
     /// Speed of the setpoint below which they count, d/tick.
     pub speed: f64,
-    /// Ticks for which the setpoint has to be slower.
+    /// Following error above which they do not count, d.
+    pub error: f64,
+    /// Ticks for which the setpoint has to be slower and the error smaller.
     pub ticks: f64,
 }
 
@@ -91,7 +93,9 @@ pub struct Config {
     pub(super) calm: GainSet,
     /// Speed of the setpoint below which the latter counts, Q11.20; below zero: never.
     pub(super) calm_speed: i32,
-    /// Ticks for which it has to be slower.
+    /// Following error above which it does not count.
+    pub(super) calm_error: i32,
+    /// Ticks for which both have to be smaller.
     pub(super) calm_ticks: u32,
     deadband: i32,
     /// Largest following error at which the integral holds at rest; below zero for none.
@@ -156,16 +160,20 @@ impl Config {
         let set = |gains: &Gains| GainSet::new(gains, delay, within, within_bias);
         let (feedforward, feedforward_shift) = quantise(&beside)?;
         let moving = set(gains)?;
-        let (calm, calm_speed, calm_ticks) = match &extras.calm {
+        let (calm, calm_speed, calm_error, calm_ticks) = match &extras.calm {
             Some(calm) => (
                 set(&calm.gains)?,
                 scaled(
                     checked("calm_d_per_tick", calm.speed, 0.0, 2047.0)?,
                     Velocity::FRAC_NBITS,
                 ),
+                scaled(
+                    checked("calm_error_d", calm.error, 0.0, 3e4)?,
+                    FollowingError::FRAC_NBITS,
+                ),
                 checked("calm_ticks", calm.ticks, 0.0, 1e6)? as u32,
             ),
-            None => (moving, -1, u32::MAX),
+            None => (moving, -1, 0, u32::MAX),
         };
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
         let rest_band = checked("rest_band_d", extras.rest_band_d, 0.0, 1000.0)?;
@@ -173,6 +181,7 @@ impl Config {
             moving,
             calm,
             calm_speed,
+            calm_error,
             calm_ticks,
             feedforward,
             feedforward_shift,

@@ -193,7 +193,15 @@ impl Controller {
     fn is_calm(&mut self, signals: &[i32; TERMS], setpoint: &Setpoint) -> bool {
         let was_calm = self.slow_ticks >= self.config.calm_ticks;
         let speed = setpoint.velocity.to_bits().saturating_abs();
-        self.slow_ticks = if speed > self.config.calm_speed {
+        let [error, ..] = *signals;
+        // Eight times as much to leave as to come: the other gains, at rest, may be what makes the error.
+        let bound = if was_calm {
+            self.config.calm_error.saturating_mul(8)
+        } else {
+            self.config.calm_error
+        };
+        let is_slow = speed <= self.config.calm_speed && error.saturating_abs() <= bound;
+        self.slow_ticks = if !is_slow {
             0
         } else {
             self.slow_ticks.saturating_add(1)

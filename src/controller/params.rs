@@ -49,8 +49,10 @@ parameter_table! {
     pub struct CalmParams {
         /// Feed of the setpoint below which they count; 0 for never
         below_mm_per_min: 0.0, "mm/min", 0.0..=1e5;
-        /// Time for which the setpoint has to be slower
-        after_s: 0.1, "s", 0.0..=10.0;
+        /// Following error above which they do not begin to; eight times as much ends them
+        within_mm: 10.0, "mm", 0.0..=10.0;
+        /// Time for which both have to be smaller
+        after_s: 0.3, "s", 0.0..=10.0;
         /// kp
         position_gain_per_s: 0.0, "1/s", 0.0..=1e4;
         /// ki
@@ -196,6 +198,7 @@ impl LawParams<'_> {
                 ..gains
             },
             speed: scale.velocity_from_feed(calm.below_mm_per_min)?,
+            error: scale.counts_from_mm(calm.within_mm),
             ticks: calm.after_s * scale.tick_hz(),
         }))
     }

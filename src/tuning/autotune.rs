@@ -4,7 +4,7 @@
 //! dead time. **Feedback** puts two equal pairs of poles at a radius r with a damping; the radius is the largest, by bisection for each
 //! of a few dampings, at which every drive within ± 20 % of gain and of period keeps the margins, at every density of
 //! edges from 2 in a tick on; of the dampings that is taken which allows the largest integral gain, r⁴. The drive's delay is
-//! predicted over. **Calm gains**, for rest and creep, are placed likewise at one edge a tick with more margin.
+//! predicted over. **Calm gains**, for rest and creep, are as slow as leaves the drive its own stiffness.
 //! What was found is [tried](super::check) on the model, and on the corners without friction, before it is offered.
 
 use core::fmt;
@@ -107,11 +107,10 @@ const STEP: f64 = 1.15;
 const HALVINGS: u32 = 4;
 /// Feed below which the calm gains count, as edges a tick.
 const CALM_EDGES: f64 = 1.0;
-/// Margins of the calm gains, dB and degrees.
-const CALM_MARGINS: (f64, f64) = (10.0, 45.0);
-/// Calm poles are no slower than at this part of the drive's natural frequency: below it the velocity link is negative
-/// and takes stiffness from the drive, which friction that falls with speed needs.
-const CALM_FLOOR: f64 = 0.5;
+/// Radius of the calm poles, of the drive's natural frequency. They are slow, but with a velocity link that is not negative
+/// (from 1/√6 on): it would take stiffness from the drive, which friction that falls with speed needs. Of 0.43 to 0.66 this
+/// crept best on the 16K20F3.
+const CALM_SHARE: f64 = 0.49;
 /// Band at rest in which the integral holds, d: within a discrete the encoder shows nothing.
 const REST_BAND_D: f64 = 0.6;
 
@@ -133,7 +132,7 @@ pub fn autotune(
         &params.controller,
         model.place_pole_pairs(bandwidth, damping)?,
     );
-    let calm = calm_radius(model, &params)?.min(bandwidth);
+    let calm = (CALM_SHARE * core::f64::consts::TAU / model.natural_period_s).min(bandwidth);
     params.calm = calm_params(model, &params, calm)?;
     let (nominal, worst) = margins(model, &params, &OCTAVES)?;
     let (trial, corner_trial) = trials(model, &params)?;
@@ -216,6 +215,10 @@ fn prepared(
     })
 }
 
+/// What is left of the disturbance that an observer has to expect where friction and offset are fed forward: of 0.1 to 3 this
+/// crept best on the 16K20F3.
+const LEFT_DISTURBANCE: f64 = 0.2;
+
 /// The observer of the drive.
 fn on(params: &ObserverParams, model: &DriveModel) -> ObserverParams {
     ObserverParams {
@@ -224,6 +227,7 @@ fn on(params: &ObserverParams, model: &DriveModel) -> ObserverParams {
         damping: model.damping,
         delay_s: model.delay_s,
         offset: model.offset,
+        disturbance_noise_m_s2: params.disturbance_noise_m_s2 * LEFT_DISTURBANCE,
         ..*params
     }
 }
@@ -348,19 +352,6 @@ fn suffice(margins: &Margins, gain_db: f64, phase_deg: f64) -> bool {
     margins.gain_db >= gain_db && margins.reserve_db >= gain_db && margins.phase_deg >= phase_deg
 }
 
-/// Radius of the calm poles.
-fn calm_radius(model: &DriveModel, params: &AxisParams) -> Result<f64, AutotuneError> {
-    let omega = core::f64::consts::TAU / model.natural_period_s;
-    let mut trial = *params;
-    let mut keeps = |radius: f64| -> Result<bool, AutotuneError> {
-        trial.controller = with_feedback(&params.controller, model.place_poles(radius)?);
-        let (_, worst) = margins(model, &trial, &[0])?;
-        Ok(suffice(&worst, CALM_MARGINS.0, CALM_MARGINS.1))
-    };
-    let floor = CALM_FLOOR * omega;
-    Ok(largest(model, &mut keeps)?.map_or(floor, |radius| radius.max(floor)))
-}
-
 fn calm_params(
     model: &DriveModel,
     params: &AxisParams,
@@ -382,8 +373,8 @@ fn calm_params(
 const TRIAL_MM: f64 = 20.0;
 /// Share of the feed at which corners are tried, as a lower gain costs speed.
 const CORNER_FEED: f64 = 0.6;
-/// Swing at rest, and error there, that no trial may pass, d.
-const MOST_UNREST_D: (f64, f64) = (2.0, 40.0);
+/// Swing at the end of a rest from which on a trial has not come to rest, d.
+const MOST_UNREST_D: f64 = 5.0;
 
 /// Moves on the model and on its corners.
 fn trials(model: &DriveModel, params: &AxisParams) -> Result<(Trial, Trial), AutotuneError> {
@@ -408,8 +399,7 @@ fn trials(model: &DriveModel, params: &AxisParams) -> Result<(Trial, Trial), Aut
             swing_d: worst.swing_d.max(seen.swing_d),
         };
     }
-    let (most_swing, most_error) = MOST_UNREST_D;
-    if worst.swing_d > most_swing || worst.standing_d > most_error {
+    if worst.swing_d > MOST_UNREST_D {
         return Err(AutotuneError::Trial(worst));
     }
     Ok((own, worst))

@@ -18,7 +18,7 @@ pub struct Trial {
     pub peak_d: f64,
     /// Largest following error from 100 ms after a move to its end, d.
     pub standing_d: f64,
-    /// Peak to peak of the shaft in the second half of the rest, d.
+    /// Peak to peak of the shaft in the last of four seconds of rest, d.
     pub swing_d: f64,
 }
 
@@ -194,7 +194,7 @@ pub fn trial(
         run(&mut axis, profile.ticks(), &mut |_, error, _| {
             result.peak_d = result.peak_d.max(error.abs());
         });
-        let (settled, half, all) = (ticks(0.1), ticks(0.5), ticks(1.0));
+        let (settled, quiet, all) = (ticks(0.1), ticks(3.0), ticks(4.0));
         let mut extent = [f64::INFINITY, f64::NEG_INFINITY];
         run(&mut axis, all, &mut |index, error, shaft| {
             if index < settled {
@@ -202,7 +202,7 @@ pub fn trial(
             } else {
                 result.standing_d = result.standing_d.max(error.abs());
             }
-            if index >= half {
+            if index >= quiet {
                 let [low, high] = extent;
                 extent = [low.min(shaft), high.max(shaft)];
             }
