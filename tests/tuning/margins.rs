@@ -5,7 +5,7 @@ use leadscrew::params::AxisParams;
 use leadscrew::tuning::margins::Loop;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_host::tracking::{Course, Rig, model_of, tuned_on};
+use leadscrew_host::tracking::{Rig, model_of, tuned_on};
 
 /// Steady feed of the trial: 40 edges a tick, the octave of 32.
 const FEED: f64 = 2400.0;
@@ -23,13 +23,8 @@ fn oscillates(machine: &MachineParams, params: &AxisParams, factor: f64) -> bool
     let mut actual = *machine;
     actual.drive.full_command_feed_mm_per_min *= factor;
     let mut rig = Rig::new(&actual, params, None, 1).unwrap();
-    let course = Course::Move {
-        distance_mm: 120.0,
-        feed_mm_per_min: FEED,
-    };
-    let figures = rig.run(&course);
     // A stable loop comes to the steady feed; an unstable one swings by as much as the drive's acceleration lets it.
-    figures.map_or(true, |figures| figures.following.rms() > 30.0)
+    rig.cruise(160.0, FEED).unwrap().rms() > 1.0
 }
 
 /// Gain at which oscillation begins, dB.

@@ -128,6 +128,24 @@ impl<'m> Rig<'m> {
         Ok(figures)
     }
 
+    /// The error over the middle fifth of a move, where the feed is steady, d.
+    ///
+    /// # Errors
+    /// A move that cannot be planned or queued.
+    pub fn cruise(
+        &mut self,
+        distance_mm: f64,
+        feed_mm_per_min: f64,
+    ) -> Result<Spread, ScenarioError> {
+        for _ in 0..self.ticks(0.2) {
+            self.tick();
+        }
+        let mut errors = Vec::new();
+        self.travel(distance_mm, feed_mm_per_min, |_, error| errors.push(error))?;
+        let fifth = errors.len() / 5;
+        Ok(errors[2 * fifth..3 * fifth].iter().copied().collect())
+    }
+
     /// One tick; setpoint less shaft after it, d, and the shaft.
     pub fn tick(&mut self) -> (f64, f64) {
         self.machine
