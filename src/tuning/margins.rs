@@ -8,6 +8,10 @@
 //! The gain margin is how much more, and the gain reserve how much less, gain the loop takes: it has two integrators
 //! and may oscillate at too low a gain as well. Crossings count; that the loop is stable at all is for
 //! [`check`](super::check) to show.
+#![expect(
+    clippy::arithmetic_side_effects,
+    reason = "complex numbers of floats, which cannot overflow into a panic"
+)]
 
 use core::f64::consts::PI;
 

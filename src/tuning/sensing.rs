@@ -3,6 +3,10 @@
 //!
 //! Estimators that weigh counts: the impulse response, by running the estimator itself. The polynomial: the weights of its
 //! least squares over samples one a tick. The observer: its steady-state equations at a density of edges, the command included.
+#![expect(
+    clippy::arithmetic_side_effects,
+    reason = "complex numbers of floats, which cannot overflow into a panic"
+)]
 
 use super::complex::Complex;
 use crate::capture::Unwrapper;
@@ -29,7 +33,6 @@ pub struct Seen {
 
 /// An estimator's linear model.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one at a time, outside the tick")]
 pub enum Sensing {
     /// Impulse responses of x̂, v̂, â for counts.
     Counts([[f64; RESPONSE_TICKS]; 3]),

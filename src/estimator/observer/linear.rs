@@ -1,4 +1,8 @@
 //! The observer at a steady density of edges as linear equations, for the margins of the loop around it.
+#![expect(
+    clippy::arithmetic_side_effects,
+    reason = "complex numbers of floats, which cannot overflow into a panic"
+)]
 
 use super::Model;
 use super::config::Config;
