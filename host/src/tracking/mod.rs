@@ -11,6 +11,7 @@ pub mod axis;
 mod error;
 mod figures;
 pub mod linuxcnc;
+pub mod ours;
 pub mod scene;
 mod table;
 mod text;
@@ -19,4 +20,5 @@ mod tuned;
 
 pub use self::error::TrackingError;
 pub use self::figures::{CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow};
+pub use self::ours::{Course, Rig, TrackingFigures, model_of, tuned_on};
 pub use self::table::{SEEDS, figures, setpoints};
