@@ -1,7 +1,7 @@
 //! Machines that cannot be identified, and experiments that are cut short.
 
 use leadscrew::axis::{Axis, Inputs, StartError};
-use leadscrew::hal::{Encoder, Lines};
+use leadscrew::hal::Encoder;
 use leadscrew::identification::experiment::Ending;
 use leadscrew::identification::program::{Bounds, Program, Segment, command};
 use leadscrew::identification::{Identification, IdentifyParams, Refusal};
@@ -81,7 +81,6 @@ fn parameters_and_memory_are_checked() {
 
 /// An axis on the full machine, enabled and at rest.
 struct Ready {
-    bench: Bench,
     machine: Machine,
     axis: Axis<'static>,
 }
@@ -92,7 +91,6 @@ impl Ready {
         let mut ready = Self {
             machine: Machine::new(&bench.machine, 1000.0, 1).unwrap(),
             axis: bench.axis(),
-            bench,
         };
         ready.run(20, true);
         ready
@@ -206,7 +204,6 @@ fn no_experiment_without_enable_or_in_motion() {
         ready.axis.start_experiment(&program(BOUNDS)),
         Err(StartError::NotAtRest)
     );
-    let _ = (Lines::default(), ready.bench.seed);
 }
 
 #[test]
