@@ -232,6 +232,22 @@ impl<'m> EdgeReader<'m> {
         }
     }
 
+    /// Error of the boundary at which the index of the tick last [noted](Self::note) was latched, Q.16 d; 0 without an
+    /// index or a map tied to it.
+    #[must_use]
+    pub fn index_error(&self, observation: &Observation<'_>) -> i32 {
+        let (Some(tie), Some(latch)) = (&self.tie, observation.index()) else {
+            return 0;
+        };
+        if tie.state() != MapState::Tied || observation.delta == 0 {
+            return 0;
+        }
+        let direction = Direction::of(observation.delta);
+        let above = i64::from(direction == Direction::Backward);
+        let boundary = latch.count.wrapping_add(above);
+        tie.error(boundary.wrapping_sub(observation.count) as i32, direction)
+    }
+
     /// Time from the previous sampling instant to this one.
     #[must_use]
     pub const fn elapsed(&self, observation: &Observation<'_>) -> Span {
@@ -297,14 +313,11 @@ impl<'m> EdgeReader<'m> {
             }
             None => 0,
         };
-        let [older, newer] = times.map(|times| sum_of_ages(observation.sampled_at as u32, times));
+        let ages = sum_of_ages(observation, times, edges);
         EdgeSample {
             position: place(doubled.wrapping_shl(Position::FRAC_NBITS - 1), error),
             correction: error,
-            age: self
-                .config
-                .scale
-                .mean_span(older.wrapping_add(newer), edges),
+            age: self.config.scale.mean_span(ages, edges),
             edges,
         }
     }
@@ -326,15 +339,42 @@ fn rounded_mean(sum: i32, count: u32) -> i32 {
 /// Ages below [`MAX_SPAN_TICKS`] of so many edges add up in 32 bits at every clock and rate.
 const CHUNK: usize = 128;
 
-/// How long the edges at `times` lie before `now`, added up, clocks.
-fn sum_of_ages(now: u32, times: &[u32]) -> u64 {
-    times
-        .chunks(CHUNK)
-        .map(|times| {
-            let sum = times.iter().copied().fold(0, u32::wrapping_add);
-            now.wrapping_mul(times.len() as u32).wrapping_sub(sum)
-        })
-        .fold(0, |total, sum| total.wrapping_add(u64::from(sum)))
+/// How long the `edges` edges at `times` lie before the sample, added up, clocks.
+fn sum_of_ages(observation: &Observation<'_>, times: [&[u32]; 2], edges: u32) -> u64 {
+    let now = observation.sampled_at as u32;
+    // None is older than the tick.
+    if observation.elapsed.checked_mul(edges).is_some() {
+        let [older, newer] = times.map(wrapping_sum);
+        let sum = older.wrapping_add(newer);
+        return u64::from(now.wrapping_mul(edges).wrapping_sub(sum));
+    }
+    chunked_sum_of_ages(now, times)
+}
+
+/// The same where it needs more than 32 bits.
+#[cold]
+fn chunked_sum_of_ages(now: u32, times: [&[u32]; 2]) -> u64 {
+    let chunks = times.into_iter().flat_map(|times| times.chunks(CHUNK));
+    chunks.fold(0, |total, times| {
+        let ages = now
+            .wrapping_mul(times.len() as u32)
+            .wrapping_sub(wrapping_sum(times));
+        total.wrapping_add(u64::from(ages))
+    })
+}
+
+/// The sum of all, modulo 2³². A function of its own, eight at a time: with its registers to itself an edge costs
+/// little more than its addition.
+#[inline(never)]
+fn wrapping_sum(times: &[u32]) -> u32 {
+    let (eights, rest) = times.as_chunks::<8>();
+    let mut sum = 0_u32;
+    for &[a, b, c, d, e, f, g, h] in eights {
+        for time in [a, b, c, d, e, f, g, h] {
+            sum = sum.wrapping_add(time);
+        }
+    }
+    rest.iter().copied().fold(sum, u32::wrapping_add)
 }
 
 #[cfg(test)]

@@ -26,6 +26,8 @@ pub struct Field<T> {
 
 /// A struct made by [`parameter_table!`](crate::parameter_table!).
 pub trait ParameterTable: Default + 'static {
+    /// What it is about, line by line.
+    const ABOUT: &'static [&'static str];
     /// Its parameters, in order.
     const FIELDS: &'static [Field<Self>];
 
@@ -45,12 +47,12 @@ pub trait ParameterTable: Default + 'static {
 #[macro_export]
 macro_rules! parameter_table {
     (
-        $(#[$meta:meta])*
+        $(#[doc = $about:literal])+
         pub struct $name:ident {
             $(#[doc = $description:literal] $field:ident: $default:expr, $unit:literal, $min:literal..=$max:literal;)*
         }
     ) => {
-        $(#[$meta])*
+        $(#[doc = $about])+
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name {
             $(#[doc = concat!($description, " (", $unit, ", ", stringify!($min), " to ", stringify!($max), ")")] pub $field: f64,)*
@@ -63,6 +65,7 @@ macro_rules! parameter_table {
         }
 
         impl $crate::parameter_table::ParameterTable for $name {
+            const ABOUT: &'static [&'static str] = &[$($about.trim_ascii()),+];
             const FIELDS: &'static [$crate::parameter_table::Field<Self>] = &[
                 $($crate::parameter_table::Field {
                     name: stringify!($field),

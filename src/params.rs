@@ -1,16 +1,26 @@
 //! Parameters in physical units, and their validation into the quantised configuration of the tick.
 
+mod sections;
+
+pub use sections::SectionVisitor;
+
 use core::fmt;
 
-use crate::controller::config::Gains;
+use crate::compensation::CompensationParams;
+use crate::controller::params::LawParams;
+pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
-use crate::estimator::{Delay, EstimatorConfig};
+use crate::estimator::EstimatorConfig;
+use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::setpoint::sources::{self, SourceParams};
+use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -28,10 +38,26 @@ pub struct AxisParams {
     pub motion: MotionParams,
     /// Estimator; its parameters are in ticks.
     pub estimator: EstimatorConfig,
+    /// A second one for paths of its own; it costs only where it is given.
+    pub second_estimator: Option<EstimatorConfig>,
+    /// Which of them serves which path.
+    pub paths: Paths,
     /// Control law.
     pub controller: ControllerParams,
+    /// Filters of its feedback part.
+    pub filter: FilterParams,
+    /// Its feedforward against friction.
+    pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
+    /// What the axis is watched for.
+    pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
+    /// Sources of setpoints other than planned moves.
+    pub sources: SourceParams,
 }
 
 parameter_table! {
@@ -47,36 +73,6 @@ parameter_table! {
         max_acceleration_m_s2: 0.9, "m/s²", 1e-6..=1e4;
         /// Largest jerk of a move
         max_jerk_m_s3: 10.0, "m/s³", 1e-6..=1e7;
-    }
-}
-
-parameter_table! {
-    /// The control law. Gains are normalised by the full-command speed: a velocity demand of 1 mm/s for
-    /// each mm of following error is a position gain of 1 /s on any axis, at any tick rate. The
-    /// default is velocity feedforward alone: an axis that moves without a loop.
-    pub struct ControllerParams {
-        /// kp
-        position_gain_per_s: 0.0, "1/s", 0.0..=1e4;
-        /// ki
-        integral_gain_per_s2: 0.0, "1/s²", 0.0..=1e6;
-        /// kd: velocity demand per rate of change of the following error
-        derivative_gain: 0.0, "1", 0.0..=1e4;
-        /// kv: velocity demand per velocity error
-        velocity_gain: 0.0, "1", -1e4..=1e4;
-        /// ka: velocity demand per acceleration error
-        acceleration_gain_s: 0.0, "s", -10.0..=10.0;
-        /// Velocity feedforward; 1 for a drive whose full-command feed is right
-        velocity_feedforward: 1.0, "1", 0.0..=2.0;
-        /// Acceleration feedforward
-        acceleration_feedforward_s: 0.0, "s", 0.0..=10.0;
-        /// Jerk feedforward
-        jerk_feedforward_s2: 0.0, "s²", 0.0..=10.0;
-        /// Following error that is ignored
-        deadband_mm: 0.0, "mm", 0.0..=1.0;
-        /// Constant output against the drive's offset
-        bias: 0.0, "of full command", -1.0..=1.0;
-        /// Time constant with which a jump of the law at enable or at a parameter change is let in
-        transfer_time_s: 0.05, "s", 0.0..=10.0;
     }
 }
 
@@ -135,14 +131,24 @@ impl core::error::Error for ParamError {}
 pub struct AxisConfig {
     /// Edge timer and noise of the edges.
     pub edges: EdgeConfig,
-    /// Estimator.
-    pub estimator: EstimatorConfig,
+    /// Counts and ticks.
+    pub scale: AxisScale,
+    /// Estimators and their paths.
+    pub estimators: EstimatorsConfig,
     /// Control law.
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
+    /// What the axis is watched for.
+    pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
+    /// Sources of setpoints other than planned moves.
+    pub sources: sources::Config,
 }
 
 impl AxisParams {
@@ -155,8 +161,16 @@ impl AxisParams {
             encoder: EdgeErrors::default(),
             motion: MotionParams::default(),
             estimator,
+            second_estimator: None,
+            paths: Paths::default(),
             controller: ControllerParams::default(),
+            filter: FilterParams::default(),
+            friction: FrictionParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
+            supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
+            sources: SourceParams::default(),
         }
     }
 
@@ -170,14 +184,30 @@ impl AxisParams {
         self.motion.check()?;
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
+        let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
-            estimator: self.estimator,
-            limits: self.motion.limits(scale)?,
-            controller: self
-                .controller
-                .quantise(scale, full_velocity, self.estimator.delay())?,
+            scale,
+            estimators,
+            limits,
+            compensation,
+            homing: self.homing.quantise(scale, &limits)?,
+            controller: LawParams {
+                controller: &self.controller,
+                filter: &self.filter,
+                friction: &self.friction,
+            }
+            .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            sources: self.sources.quantise(scale, limits, edges)?,
+            supervisor: self.supervisor.quantise(
+                scale,
+                full_velocity,
+                scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+            )?,
         })
     }
 }
@@ -200,38 +230,6 @@ impl MotionParams {
             scale.velocity_from_feed(max_feed_mm_per_min)?,
             scale.acceleration_from_m_s2(self.max_acceleration_m_s2),
             scale.jerk_from_m_s3(self.max_jerk_m_s3),
-        )?)
-    }
-}
-
-impl ControllerParams {
-    /// Gains per d and tick; `full_velocity` is the speed at full command, d/tick, `delay` is the estimator's.
-    fn quantise(
-        &self,
-        scale: AxisScale,
-        full_velocity: f64,
-        delay: Delay,
-    ) -> Result<controller::Config, ParamError> {
-        self.check()?;
-        let rate = scale.tick_hz();
-        let gains = Gains {
-            position: self.position_gain_per_s / (rate * full_velocity),
-            integral: self.integral_gain_per_s2 / (rate * rate * full_velocity),
-            derivative: self.derivative_gain / full_velocity,
-            velocity: self.velocity_gain / full_velocity,
-            acceleration: self.acceleration_gain_s * rate / full_velocity,
-            velocity_feedforward: self.velocity_feedforward / full_velocity,
-            acceleration_feedforward: self.acceleration_feedforward_s * rate / full_velocity,
-            jerk_feedforward: self.jerk_feedforward_s2 * rate * rate / full_velocity,
-        };
-        let deadband_d = scale.counts_from_mm(self.deadband_mm);
-        let transfer_ticks = (self.transfer_time_s * rate).max(1.0);
-        Ok(controller::Config::new(
-            &gains,
-            delay,
-            deadband_d,
-            self.bias,
-            transfer_ticks,
         )?)
     }
 }

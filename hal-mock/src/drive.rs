@@ -65,6 +65,18 @@ impl DriveParams {
     }
 }
 
+/// What has the shaft besides the drive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Grip {
+    /// Nothing.
+    #[default]
+    None,
+    /// A brake, which slows it down by so many d/tick² and then holds it.
+    Braked(f64),
+    /// A load, which accelerates it by so many d/tick².
+    Falling(f64),
+}
+
 /// Most ticks of transport delay; a power of two, so that a place that wraps stays in step.
 const MAX_DELAY: usize = 4096;
 /// Finest resolution that an f32 of the command has.
@@ -143,9 +155,19 @@ impl Drive {
 
     /// Moves one tick under `command`; off (`enable` false) the drive brakes to a stop.
     pub fn step(&mut self, command: Command, enable: bool) -> Arc {
+        self.step_gripped(command, enable, Grip::None)
+    }
+
+    /// The same with what grips the shaft besides the drive.
+    pub fn step_gripped(&mut self, command: Command, enable: bool, grip: Grip) -> Arc {
         let delayed = self.delayed(command);
         let wanted = if enable { self.answer(delayed) } else { 0.0 };
-        let arc = if self.is_stuck(wanted) {
+        let arc = if let Some(arc) = self.gripped(grip) {
+            self.shaft = arc.end();
+            // A grip ends with the tick.
+            self.shaft.acceleration = 0.0;
+            arc
+        } else if self.is_stuck(wanted) {
             let arc = self.rest();
             // What stopped the shaft ends with its motion: the next start is from rest.
             self.shaft = State {
@@ -207,6 +229,24 @@ impl Drive {
             .as_ref()
             .is_some_and(|friction| (wanted as f32).abs() <= friction.held)
             && (velocity == 0.0 || (velocity + acceleration) * velocity <= 0.0)
+    }
+
+    /// The motion of a tick in which something stronger than the drive has the shaft.
+    fn gripped(&self, grip: Grip) -> Option<Arc> {
+        let State {
+            position, velocity, ..
+        } = self.shaft;
+        let acceleration = match grip {
+            Grip::None => return None,
+            Grip::Braked(deceleration) => -velocity.clamp(-deceleration, deceleration),
+            Grip::Falling(acceleration) => acceleration,
+        };
+        let start = State {
+            position,
+            velocity,
+            acceleration,
+        };
+        Some(Arc { start, jerk: 0.0 })
     }
 
     /// Comes to rest within the tick.

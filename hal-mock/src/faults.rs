@@ -86,6 +86,19 @@ impl FaultyEncoder {
         })
     }
 
+    /// Has `fault` instead, in `ticks` counted from the next capture on as 0. What the last fault did to the count stays.
+    ///
+    /// # Errors
+    /// A figure of the fault out of range.
+    pub fn inject(&mut self, fault: Fault, ticks: Range<u32>) -> Result<(), RangeError> {
+        fault.check()?;
+        let after = |tick: u32| self.tick.saturating_add(tick);
+        self.ticks = after(ticks.start)..after(ticks.end);
+        self.fault = fault;
+        self.interference = None;
+        Ok(())
+    }
+
     /// The capture of the faulty encoder where the good one has `capture`; call it with every capture.
     pub fn apply(&mut self, capture: &Capture<'_>) -> Capture<'_> {
         self.ring.release();

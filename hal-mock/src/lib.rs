@@ -14,11 +14,13 @@
 #![forbid(unsafe_code)]
 
 pub mod arc;
+pub mod board;
 pub mod carriage;
 pub mod disc;
 pub mod drive;
 pub mod encoder;
 pub mod faults;
+pub mod invariants;
 pub mod learning;
 pub mod machine;
 pub mod play;
@@ -26,6 +28,7 @@ mod random;
 pub mod scenario;
 pub mod scene;
 mod slip;
+pub mod spindle;
 pub mod tachogenerator;
 pub mod trace;
 mod track;

@@ -6,7 +6,7 @@ use leadscrew::units::{AxisScale, Command, RangeError};
 
 use crate::arc::{Arc, State};
 use crate::carriage::{Carriage, CarriageParams};
-use crate::drive::{Drive, DriveParams};
+use crate::drive::{Drive, DriveParams, Grip};
 use crate::encoder::{Encoder, EncoderModel};
 use crate::play::Play;
 use crate::slip::Slip;
@@ -117,8 +117,13 @@ impl Machine {
 
     /// Moves through one tick under the command that was put out before it.
     pub fn step(&mut self, command: Command, enable: bool) {
+        self.step_gripped(command, enable, Grip::None);
+    }
+
+    /// The same with what grips the shaft besides the drive.
+    pub fn step_gripped(&mut self, command: Command, enable: bool, grip: Grip) {
         let ripple = self.drive.ripple();
-        let turned = self.drive.step(command, enable);
+        let turned = self.drive.step_gripped(command, enable, grip);
         let shaft = self.drive.shaft();
         self.carriage.step(shaft);
         self.turned = (turned, ripple);
@@ -143,6 +148,14 @@ impl Machine {
         self.encoder.advance(&self.seen);
     }
 
+    /// Lets the encoder's coupling lose the share `lost` of its motion from the next step on, 1 for all of it.
+    pub fn set_slip(&mut self, lost: f64) {
+        match &mut self.slip {
+            Some(slip) => slip.set(lost),
+            None => self.slip = Slip::new(lost, 0.0),
+        }
+    }
+
     /// The encoder, for where its edges really lie.
     #[must_use]
     pub const fn encoder(&self) -> &Encoder {
@@ -157,6 +170,12 @@ impl Machine {
             shaft,
             carriage: self.carriage.state(),
         }
+    }
+
+    /// The screw at the sampling instant: where the encoder is, unless its coupling has play or slips.
+    #[must_use]
+    pub fn screw(&self) -> State {
+        self.turned.0.at(1.0 - self.encoder.sampling_advance())
     }
 
     /// Mean reading of the tachogenerator over the last tick, d/tick. Call it once a tick, or never: the

@@ -23,6 +23,12 @@ impl Slip {
         })
     }
 
+    /// Loses the share `lost` from now on; what was lost before stays lost.
+    pub fn set(&mut self, lost: f64) {
+        self.kept = 1.0 - lost;
+        self.ticks_left = 0;
+    }
+
     /// What the encoder does where the shaft does `arc`.
     pub fn follow(&mut self, arc: &Arc) -> Arc {
         if self.ticks_left > 0 {

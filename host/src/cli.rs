@@ -29,7 +29,7 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Moves a simulated axis there and back and reports how well it went
+    /// Moves a simulated axis there and back, or runs a scenario, and reports how well it went
     Sim(SimArgs),
     /// Decodes a logic-analyser capture of an encoder and runs the estimators on it
     Replay(ReplayArgs),
@@ -41,6 +41,8 @@ pub enum Command {
     TuneFilter(TuneFilterArgs),
     /// Measures the estimators on the scenes of reference: the tables of accuracy
     Accuracy(AccuracyArgs),
+    /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
+    Tracking(TrackingArgs),
 }
 
 /// Arguments of `accuracy`.
@@ -49,6 +51,17 @@ pub struct AccuracyArgs {
     /// Print the report as JSON, alone, on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `tracking`.
+#[derive(Debug, Args)]
+pub struct TrackingArgs {
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Search the gains of the hand-tuned peer anew, print them and stop (a minute or two)
+    #[arg(long, conflicts_with = "json")]
+    pub tune_linuxcnc: bool,
 }
 
 /// Where results go.
@@ -71,6 +84,13 @@ pub struct SimArgs {
     /// The machine: 16k20f3, 16k20f3-bare or a TOML file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
     pub machine: String,
+    /// Run what FILE says instead of a move there and back, and fail unless all that it expects comes true
+    #[arg(
+        long,
+        value_name = "FILE.toml",
+        conflicts_with_all = ["machine", "move_mm", "feed", "tick_hz", "estimator", "seed", "dump_machine"]
+    )]
+    pub scenario: Option<PathBuf>,
     /// Distance of the move, mm; negative to start the other way
     #[arg(
         long,

@@ -46,11 +46,7 @@ impl<'m> Listening<'m> {
     ) -> i64 {
         let observation = self.unwrapper.unwrap(capture);
         self.edges.note(&observation);
-        let evidence = Evidence {
-            observation: &observation,
-            edges: &self.edges,
-            command,
-        };
+        let evidence = Evidence::new(&observation, &self.edges, command);
         for (index, estimator) in self.estimators.iter_mut().enumerate() {
             take(index, estimator.update(&evidence));
         }

@@ -1,41 +1,42 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
+mod planned;
+mod reconfigure;
+mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
+pub use reconfigure::ReconfigureError;
 
-use core::fmt;
-
-use crate::capture::{CaptureHealth, Unwrapper};
-use crate::compensation::Compensation;
+use crate::capture::{CaptureHealth, Observation, Unwrapper};
+use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
+use crate::homing::{HomeRefused, Homing, Sight};
 use crate::identification::experiment::{Experiment, Seen};
-use crate::identification::program::Program;
 use crate::output::Output;
 use crate::params::AxisConfig;
-use crate::setpoint::profile::Profile;
+use crate::setpoint::Setpoint;
 use crate::setpoint::sources::Sources;
-use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{Permit, Review, Situation, State, Supervisor};
-use crate::units::Position;
+use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
+use crate::units::{Command, Position};
 
-/// An axis slower than this power of two below its largest speed is at rest: an offset of the drive moves it,
-/// until it is identified.
-const REST_SHIFT: u32 = 5;
-
-/// One axis; `'m` is how long its encoder map lives.
+/// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
     edges: EdgeReader<'m>,
-    estimator: Estimator,
+    estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
-    compensation: Compensation,
+    homing: Homing,
+    compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
     experiment: Option<Experiment>,
@@ -53,10 +54,11 @@ impl<'m> Axis<'m> {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimator: Estimator::new(config.estimator),
-            supervisor: Supervisor::new(),
-            sources: Sources::new(),
-            compensation: Compensation::default(),
+            estimators: Estimators::new(&config.estimators),
+            supervisor: Supervisor::new(config.supervisor),
+            sources: Sources::new(&config.limits, &config.sources),
+            homing: Homing::new(config.homing),
+            compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             experiment: None,
@@ -72,7 +74,6 @@ impl<'m> Axis<'m> {
         self.tick = tick.wrapping_add(1);
         let observation = self.unwrapper.unwrap(&inputs.capture);
         self.edges.note(&observation);
-        let position = observation.position();
 
         // Written in place: a structure of this size is not returned in registers.
         let outputs = &mut self.outputs;
@@ -80,28 +81,52 @@ impl<'m> Axis<'m> {
         outputs.tick = tick;
         outputs.count = observation.count;
         let command = was_enabled.then(|| self.output.command());
-        outputs.estimate = self.estimator.update(&Evidence {
+        let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
+            sample: None,
             command,
-        });
+        };
+        self.estimators.update(&mut evidence, &mut outputs.estimate);
+        let (_, position) = self
+            .estimators
+            .feedback(&outputs.estimate, observation.position());
 
+        let told = self.output.command();
+        let lines = self.homing.without_limit_left(inputs.lines);
         let permit = self.supervisor.permit(&Situation {
+            tick,
             enable: inputs.enable,
-            lines: &inputs.lines,
+            lines: &lines,
+            illegal: inputs.capture.illegal,
+            missed_ticks: inputs.missed_ticks,
+            readback: inputs.readback,
+            told,
         });
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
         let open_loop = self.is_open_loop();
-        if open_loop || !(was_enabled && permit > Permit::ZeroVolts) {
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), lines.master_lost);
+        let commanded = if self.homing.is_active() {
+            self.step_homing(&observation, inputs, permit)
+        } else {
+            self.sources.step(tick, reference, permit)
+        };
         let outputs = &mut self.outputs;
-        let commanded = self.sources.step(tick, &inputs.reference, permit);
-        outputs.moving = self.sources.is_moving();
+        outputs.retract = self.sources.retract();
+        outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
-        let mut demand =
-            self.controller
-                .step(&outputs.setpoint, position, &outputs.estimate, active);
+        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
+        let mut demand = self
+            .controller
+            .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
         if let Some(experiment) = &mut self.experiment {
             demand.command = experiment.step(&Seen {
@@ -115,13 +140,26 @@ impl<'m> Axis<'m> {
 
         let permit = self.supervisor.review(&Review {
             permit,
+            tick,
             moving: outputs.moving,
-            trouble: self.sources.trouble(),
+            trouble: self.sources.trouble().or(self.homing.trouble()),
+            lines: &lines,
+            observation: &observation,
+            estimate: &outputs.estimate,
+            setpoint: &outputs.setpoint,
+            following_error: outputs.following_error.to_bits(),
+            told,
+            active,
             open_loop,
         });
         if let Some(experiment) = &mut self.experiment {
             experiment.review(permit);
         }
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let outputs = &mut self.outputs;
+        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
@@ -129,101 +167,164 @@ impl<'m> Axis<'m> {
         };
         outputs.limits = self.output.active_limits();
         outputs.enabled = permit > Permit::Off;
-        outputs.brake_released = outputs.enabled;
+        outputs.brake_released = self.supervisor.brake_released();
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
-        outputs.reported = position;
+        outputs.warnings = self.supervisor.warnings();
+        outputs.refused = self.supervisor.is_refused();
+        let is_index_right = self.homing.check_index(&observation);
+        if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
+            self.homing.lose_origin();
+            self.compensation.set_origin(None);
+            self.sources.set_travel(None);
+        }
+        outputs.reported = self.compensation.reported(position);
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.sources.hold(position);
+        self.homing.abort();
+        self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
     }
 
-    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
-    ///
-    /// # Errors
-    /// [`QueueError`]; the axis then goes on as it was.
-    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.outputs.enabled {
-            return Err(QueueError::Disabled);
-        }
-        self.sources
-            .trajectory
-            .queue(profile, start, self.tick.wrapping_sub(1))
+    /// Notes the context of the first fault.
+    #[cold]
+    fn note_context(&mut self, position: Position, told: Command) {
+        let Outputs {
+            estimate,
+            setpoint,
+            following_error,
+            ..
+        } = &self.outputs;
+        self.supervisor.note_context(&Context {
+            position,
+            velocity: estimate.velocity,
+            setpoint_position: setpoint.position,
+            setpoint_velocity: setpoint.velocity,
+            following_error: *following_error,
+            command: told,
+        });
     }
 
-    /// Begins an experiment with the next tick, in place of one that has ended.
+    /// Leaves the state Fault: the axis is then disabled, and may be enabled anew.
     ///
     /// # Errors
-    /// [`StartError`]; the axis then goes on as it was.
-    pub fn start_experiment(&mut self, program: &Program) -> Result<(), StartError> {
-        let running = |experiment: &Experiment| experiment.ending().is_none();
-        if self.experiment.as_ref().is_some_and(running) {
-            return Err(StartError::Running);
+    /// [`ClearError`]; the fault then stays.
+    pub fn clear_fault(&mut self) -> Result<(), ClearError> {
+        self.supervisor.clear()
+    }
+
+    /// The supervisor: the first fault and its context, warnings, the peak of the following error.
+    #[must_use]
+    pub const fn supervisor(&self) -> &Supervisor {
+        &self.supervisor
+    }
+
+    /// The same, to report faults found between ticks and to reset warnings and peak.
+    pub const fn supervisor_mut(&mut self) -> &mut Supervisor {
+        &mut self.supervisor
+    }
+
+    /// A tick of homing, or its end where it may not go on: the sources go on from there.
+    #[cold]
+    fn step_homing(
+        &mut self,
+        observation: &Observation<'_>,
+        inputs: &Inputs<'_>,
+        permit: Permit,
+    ) -> Setpoint {
+        if permit < Permit::Follow {
+            self.homing.abort();
+            return self
+                .sources
+                .step(self.tick.wrapping_sub(1), &inputs.reference, permit);
         }
-        if self.outputs.moving {
-            return Err(StartError::Moving);
+        let setpoint = self.homing.step(&Sight {
+            observation,
+            lines: &inputs.lines,
+            index_error: self.edges.index_error(observation),
+        });
+        self.sources.take_over(&setpoint);
+        self.compensation.set_origin(self.homing.origin());
+        setpoint
+    }
+
+    /// Begins homing with the next tick. The origin of before is given up, and with it, by its slew, the
+    /// compensation of the screw.
+    ///
+    /// # Errors
+    /// [`HomeRefused`] unless the axis is ready and at rest.
+    pub fn home(&mut self) -> Result<(), HomeRefused> {
+        if self.outputs.state != State::Ready || self.outputs.moving {
+            return Err(HomeRefused::NotReady);
         }
-        // A state that still says moving is that of a motion whose last tick this was.
-        let is_ready = matches!(self.outputs.state, State::Ready | State::Moving);
-        if !(self.outputs.enabled && is_ready) {
-            return Err(StartError::NotReady);
-        }
-        let speed = self.outputs.estimate.velocity.to_bits().unsigned_abs();
-        let fastest = self.config.limits.max_velocity().to_bits().unsigned_abs();
-        if speed > fastest >> REST_SHIFT {
-            return Err(StartError::NotAtRest);
-        }
-        self.experiment = Some(Experiment::new(*program));
+        self.homing.start(self.sources.last(), self.outputs.count);
+        self.compensation.set_origin(None);
+        self.sources.set_travel(None);
         Ok(())
     }
 
-    /// The experiment under way, or the one that ended and was not released yet.
+    /// Homing: where it stands, what it found, and why it failed.
     #[must_use]
-    pub const fn experiment(&self) -> Option<&Experiment> {
-        self.experiment.as_ref()
+    pub const fn homing(&self) -> &Homing {
+        &self.homing
     }
 
-    /// Ends an experiment with the next tick: an open loop's command goes to zero and stays there.
-    pub const fn abort_experiment(&mut self) {
-        if let Some(experiment) = &mut self.experiment {
-            experiment.abort();
+    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
+    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
+    /// estimated last. The encoder map stays.
+    ///
+    /// # Errors
+    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
+    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+        if self.outputs.enabled && self.outputs.moving {
+            ReconfigureError::check(&self.config, &config)?;
         }
-    }
-
-    /// Gives the axis back to its loop, which holds it where it stands. One under way is dropped.
-    pub fn release_experiment(&mut self) {
-        self.experiment = None;
-    }
-
-    /// True while an experiment keeps the loop open.
-    fn is_open_loop(&self) -> bool {
-        let experiment = self.experiment.as_ref();
-        experiment.is_some_and(Experiment::is_open_loop)
-    }
-
-    /// Takes a new configuration between two ticks. The output goes on without a step; another
-    /// estimator starts as after a long motion at the velocity estimated last. The encoder map stays.
-    pub fn reconfigure(&mut self, config: AxisConfig) {
         self.edges.reconfigure(config.edges);
-        if config.estimator != self.config.estimator {
-            self.estimator = Estimator::new(config.estimator);
-            self.estimator.prime(self.outputs.estimate.velocity);
+        if config.estimators != self.config.estimators {
+            self.estimators = Estimators::new(&config.estimators);
+            self.estimators.prime(self.outputs.estimate.velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
+        self.supervisor.reconfigure(config.supervisor);
+        self.sources.reconfigure(&config.limits, &config.sources);
+        self.compensation.reconfigure(config.compensation);
+        self.homing.reconfigure(config.homing);
         self.config = config;
+        Ok(())
     }
 
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
+    }
+
+    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
+    /// soon as an origin is known.
+    ///
+    /// # Errors
+    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
+    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
+        self.compensation.set_table(table)
+    }
+
+    /// The compensation of the screw, and the origin that it counts from.
+    #[must_use]
+    pub const fn compensation(&self) -> &Compensation<'m> {
+        &self.compensation
+    }
+
+    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
+    /// whose place is known without homing. The loop goes on as it was.
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.homing.set_origin(origin);
+        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.
@@ -250,10 +351,10 @@ impl<'m> Axis<'m> {
         &self.config
     }
 
-    /// The estimator in the loop.
+    /// The first estimator.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator {
-        &self.estimator
+        self.estimators.first()
     }
 
     /// What went wrong at the encoder so far.
@@ -263,30 +364,13 @@ impl<'m> Axis<'m> {
     }
 }
 
-/// Why an experiment was not begun.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StartError {
-    /// The axis is not enabled and ready.
-    NotReady,
-    /// A motion is commanded.
-    Moving,
-    /// The axis moves at zero command.
-    NotAtRest,
-    /// Another experiment runs.
-    Running,
+/// True for a fault after which the count may not tell the place any more.
+const fn loses_place(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::SignalLoss
+            | Fault::IllegalTransitions
+            | Fault::IndexInconsistent
+            | Fault::EncoderLoss
+    )
 }
-
-impl fmt::Display for StartError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotReady => "the axis is not ready: enable it, clear its fault",
-            Self::Moving => "the axis moves: stop it first",
-            Self::NotAtRest => {
-                "the axis moves at zero command: set the offset of the drive so that it stands"
-            }
-            Self::Running => "another experiment runs: wait for its end, or abort it",
-        })
-    }
-}
-
-impl core::error::Error for StartError {}

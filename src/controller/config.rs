@@ -1,11 +1,16 @@
 //! Gains of the controller: from fractions of full command per d and tick to integers with one scale.
 
 use super::FollowingError;
+use super::biquad::Section;
+use super::filter::{Config as FilterConfig, MAX_SECTIONS, MAX_TAPS};
+use super::friction::{Config as FrictionConfig, Friction};
 use crate::estimator::Delay;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
-/// Weighted inputs of the law, the integral apart.
+/// Weighted inputs of the law, the integral apart: those of the feedback part, the setpoints last.
 pub(super) const TERMS: usize = 7;
+/// Weighted inputs of the feedforward part: the setpoints.
+pub(super) const SETPOINTS: usize = 3;
 
 /// Fractional bits of the integral beyond those of a command.
 pub(super) const INTEGRAL_SHIFT: u32 = 26;
@@ -29,6 +34,21 @@ pub struct Gains {
     pub acceleration_feedforward: f64,
     /// Feedforward per d/tick³.
     pub jerk_feedforward: f64,
+    /// How far ahead of the setpoint the feedforward is, ticks: the delay of command and hold.
+    pub feedforward_lead: f64,
+}
+
+/// What there is beside gains; by default nothing of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extras {
+    /// Taps of the prediction over the drive's delay.
+    pub taps: [f64; MAX_TAPS],
+    /// Filter sections of the feedback part.
+    pub sections: [Option<Section>; MAX_SECTIONS],
+    /// Friction.
+    pub friction: Friction,
+    /// Following error within which the integral holds while the setpoint rests, d.
+    pub rest_band_d: f64,
 }
 
 /// Quantised controller parameters.
@@ -37,14 +57,23 @@ pub struct Gains {
 /// of the products then cannot overflow, and one shift at the end serves all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Of the following error, its change, the estimates of v and a, the setpoints of v, a and j.
+    /// Of the following error, its change, the estimates of v and a, the setpoints of v, a and j. Without filters the
+    /// feedforward is in the latter.
     weights: [i32; TERMS],
     weight_shift: u32,
-    /// Half of what is shifted out, and the bias.
+    /// Half of what is shifted out, and without filters the bias.
     offset: i64,
     deadband: i32,
     pub(super) integral_gain: i32,
+    /// Largest following error at which the integral holds at rest; below zero for none.
+    pub(super) rest_band: i32,
     pub(super) transfer_decay: u32,
+    pub(super) filter: FilterConfig,
+    /// Where there are filters, the feedforward and the bias, which pass by them.
+    feedforward: [i32; SETPOINTS],
+    feedforward_shift: u32,
+    feedforward_offset: i64,
+    pub(super) friction: FrictionConfig,
 }
 
 impl Config {
@@ -61,22 +90,62 @@ impl Config {
         bias: f64,
         transfer_ticks: f64,
     ) -> Result<Self, RangeError> {
-        let (weights, weight_shift) = quantise(gains, delay.into())?;
+        let delay = delay.into();
+        Self::with_extras(
+            gains,
+            delay,
+            deadband_d,
+            bias,
+            transfer_ticks,
+            &Extras::default(),
+        )
+    }
+
+    /// The same with `extras`.
+    ///
+    /// # Errors
+    /// [`RangeError`] naming the parameter that does not fit.
+    pub fn with_extras(
+        gains: &Gains,
+        delay: Delay,
+        deadband_d: f64,
+        bias: f64,
+        transfer_ticks: f64,
+        extras: &Extras,
+    ) -> Result<Self, RangeError> {
+        let filter = FilterConfig::new(&extras.taps, extras.sections)?;
+        let links = feedback(gains, delay)?;
+        let ahead = feedforward(gains)?;
+        let bias = scaled(checked("bias", bias, -1.0, 1.0)?, Command::FRAC_NBITS);
+        let (all, beside, biases) = if filter.is_on() {
+            (links, ahead, [0, bias])
+        } else {
+            (with_feedforward(links, ahead), [0.0; SETPOINTS], [bias, 0])
+        };
+        let (weights, weight_shift) = quantise(&all)?;
+        let (feedforward, feedforward_shift) = quantise(&beside)?;
+        let [offset, feedforward_offset] = biases.map(i64::from);
         let integral = checked("integral_gain_per_d_tick", gains.integral, 0.0, 1.9e-3)?;
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
-        let bias = scaled(checked("bias", bias, -1.0, 1.0)?, Command::FRAC_NBITS);
-        let half = 1_i64.wrapping_shl(weight_shift).wrapping_shr(1);
-        let offset = i64::from(bias)
-            .wrapping_shl(weight_shift)
-            .wrapping_add(half);
+        let rest_band = checked("rest_band_d", extras.rest_band_d, 0.0, 1000.0)?;
         Ok(Self {
             weights,
             weight_shift,
-            offset,
+            offset: shifted(offset, weight_shift),
+            feedforward,
+            feedforward_shift,
+            feedforward_offset: shifted(feedforward_offset, feedforward_shift),
+            filter,
+            friction: FrictionConfig::new(&extras.friction)?,
             deadband: scaled(
                 checked("deadband_d", deadband_d, 0.0, 1000.0)?,
                 FollowingError::FRAC_NBITS,
             ),
+            rest_band: if rest_band > 0.0 {
+                scaled(rest_band, FollowingError::FRAC_NBITS)
+            } else {
+                -1
+            },
             integral_gain: scaled(
                 integral,
                 Command::FRAC_NBITS
@@ -98,59 +167,90 @@ impl Config {
         }
     }
 
-    /// Bias and weighted sum of the signals, Q.30. The weights add up to less than 2³¹, so the sum of
-    /// products stays within ±2⁶².
+    /// Weighted sum of the signals, Q.30, without filters with the bias. The weights add up to less than 2³¹, so the sum
+    /// of products stays within ±2⁶².
+    #[inline]
     pub(super) fn weigh(&self, signals: &[i32; TERMS]) -> i64 {
-        let products = self.weights.iter().zip(signals);
-        let sum = products.fold(self.offset, |sum, (&weight, &signal)| {
-            sum.wrapping_add(i64::from(weight).wrapping_mul(i64::from(signal)))
-        });
-        sum.wrapping_shr(self.weight_shift)
+        weighed(&self.weights, signals, self.offset).wrapping_shr(self.weight_shift)
+    }
+
+    /// Where there are filters, bias and feedforward of the setpoints of v, a and j, Q.30.
+    #[inline]
+    pub(super) fn ahead(&self, setpoints: &[i32; SETPOINTS]) -> i64 {
+        weighed(&self.feedforward, setpoints, self.feedforward_offset)
+            .wrapping_shr(self.feedforward_shift)
     }
 }
 
-/// Weights in the order of [`Config`]'s field, and their common shift.
+#[inline]
+fn weighed<const N: usize>(weights: &[i32; N], signals: &[i32; N], offset: i64) -> i64 {
+    let products = weights.iter().zip(signals);
+    products.fold(offset, |sum, (&weight, &signal)| {
+        sum.wrapping_add(i64::from(weight).wrapping_mul(i64::from(signal)))
+    })
+}
+
+/// `bias` before a shift, and half of what is shifted out.
+const fn shifted(bias: i64, shift: u32) -> i64 {
+    let half = 1_i64.wrapping_shl(shift).wrapping_shr(1);
+    bias.wrapping_shl(shift).wrapping_add(half)
+}
+
+/// Weights of the feedback part in the order of [`Config`]'s field.
 ///
 /// The links' references are written out in v, a and j:
 /// kv·(v − lag_v·a + ⟨lag_v²⟩·j/2 − v̂) + ka·(a − lag_a·j − â).
-fn quantise(gains: &Gains, delay: Delay) -> Result<([i32; TERMS], u32), RangeError> {
+fn feedback(gains: &Gains, delay: Delay) -> Result<[f64; TERMS], RangeError> {
     let link_v = checked("velocity_gain", gains.velocity, -MAX_GAIN, MAX_GAIN)?;
     let link_a = checked("acceleration_gain", gains.acceleration, -MAX_GAIN, MAX_GAIN)?;
     let position = checked("position_gain", gains.position, 0.0, MAX_GAIN)?;
     let derivative = checked("derivative_gain", gains.derivative, 0.0, MAX_GAIN)?;
-    let ff_v = checked(
-        "velocity_feedforward",
-        gains.velocity_feedforward,
-        0.0,
-        MAX_GAIN,
-    )?;
-    let ff_a = checked(
-        "acceleration_feedforward",
-        gains.acceleration_feedforward,
-        0.0,
-        MAX_GAIN,
-    )?;
-    let ff_j = checked("jerk_feedforward", gains.jerk_feedforward, 0.0, MAX_GAIN)?;
     let Delay {
         velocity: lag_v,
         velocity_squared: lag_v2,
         acceleration: lag_a,
     } = delay;
-    let exact = [
+    Ok([
         weight(position, FollowingError::FRAC_NBITS),
         weight(derivative, FollowingError::FRAC_NBITS),
         weight(-link_v, Velocity::FRAC_NBITS),
         weight(-link_a, Acceleration::FRAC_NBITS),
-        weight(ff_v + link_v, Velocity::FRAC_NBITS),
-        weight(ff_a + link_a - lag_v * link_v, Acceleration::FRAC_NBITS),
+        weight(link_v, Velocity::FRAC_NBITS),
+        weight(link_a - lag_v * link_v, Acceleration::FRAC_NBITS),
+        weight(0.5 * lag_v2 * link_v - lag_a * link_a, Jerk::FRAC_NBITS),
+    ])
+}
+
+/// Weights of the setpoints of v, a and j in the feedforward, which is τ ahead of them:
+/// ff_v·(v + τ·a + τ²·j/2) + ff_a·(a + τ·j) + ff_j·j.
+fn feedforward(gains: &Gains) -> Result<[f64; SETPOINTS], RangeError> {
+    let of = |name, gain| checked(name, gain, 0.0, MAX_GAIN);
+    let by_v = of("velocity_feedforward", gains.velocity_feedforward)?;
+    let by_a = of("acceleration_feedforward", gains.acceleration_feedforward)?;
+    let by_j = of("jerk_feedforward", gains.jerk_feedforward)?;
+    let lead = checked("feedforward_lead_ticks", gains.feedforward_lead, 0.0, 1e4)?;
+    Ok([
+        weight(by_v, Velocity::FRAC_NBITS),
+        weight(by_a + lead * by_v, Acceleration::FRAC_NBITS),
         weight(
-            ff_j + 0.5 * lag_v2 * link_v - lag_a * link_a,
+            by_j + lead * by_a + 0.5 * lead * lead * by_v,
             Jerk::FRAC_NBITS,
         ),
-    ];
+    ])
+}
+
+/// All in one sum, for a law without filters.
+fn with_feedforward(feedback: [f64; TERMS], feedforward: [f64; SETPOINTS]) -> [f64; TERMS] {
+    let [e, d, v, a, set_v, set_a, set_j] = feedback;
+    let [by_v, by_a, by_j] = feedforward;
+    [e, d, v, a, set_v + by_v, set_a + by_a, set_j + by_j]
+}
+
+/// Weights as integers with a common power of two, as large as the sum of their magnitudes allows.
+fn quantise<const N: usize>(exact: &[f64; N]) -> Result<([i32; N], u32), RangeError> {
     let total: f64 = exact.iter().map(|weight| libm::fabs(*weight)).sum();
     // Rounding adds at most half a unit to each weight.
-    let room = f64::from(i32::MAX) - TERMS as f64;
+    let room = f64::from(i32::MAX) - N as f64;
     checked("sum of the controller's gains", total, 0.0, room)?;
     let mut shift = 0_u32;
     while shift < MAX_WEIGHT_SHIFT && libm::ldexp(total, shift.wrapping_add(1).cast_signed()) < room

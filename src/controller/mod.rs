@@ -1,11 +1,16 @@
 //! From setpoint and estimate to a demand on the drive: PID with feedforward and corrective links.
 //!
 //! ```text
-//! u = bias + kp·e + ki·Σe + kd·Δe                     PID on position, e = x_set − x
-//!   + kv·(v_ref − v̂) + ka·(a_ref − â)                 the papers' corrective links (P2)
-//!   + ff_v·v_set + ff_a·a_set + ff_j·j_set            feedforward
-//!   + transfer                                        decays to zero, see below
+//! u = filtered( kp·e + ki·Σe + kd·Δe                PID on position, e = x_set − x
+//!             + kv·(v_ref − v̂) + ka·(a_ref − â) )   the papers' corrective links (P2)
+//!   + ff_v·v⁺ + ff_a·a⁺ + ff_j·j                    feedforward
+//!   + friction(v⁺) + bias
+//!   + transfer                                      decays to zero, see below
 //! ```
+//!
+//! The feedforward is for the instant at which the command arrives: v⁺ = v + τ·a + τ²·j/2 and a⁺ = a + τ·j, the setpoint
+//! τ ahead ([`config::Gains::feedforward_lead`]), folded into the weights. [`filter`] holds what the feedback part passes
+//! through, [`friction`] the feedforward against friction; both cost next to nothing where they are off.
 //!
 //! An estimate holds for an instant `lag` ticks ago, so the links compare it with the setpoint of that
 //! instant: v_ref = v − lag_v·a + ⟨lag_v²⟩·j/2, a_ref = a − lag_a·j, where ⟨lag_v²⟩ is the mean square age of
@@ -14,10 +19,14 @@
 //!
 //! At enable and at a change of parameters the law would jump; the jump is taken up by `transfer`,
 //! which then decays geometrically, so the output stays continuous. Integration stops while the output
-//! is limited in the direction in which the error would drive it further, and the integral itself
-//! stays within ±1.
+//! is limited in the direction in which the error would drive it further, and while the setpoint rests and the error is
+//! within a band that static friction is left to hold; the integral itself stays within ±1.
 
+pub mod biquad;
 pub mod config;
+pub mod filter;
+pub mod friction;
+pub mod params;
 
 pub use config::Config;
 
@@ -43,6 +52,8 @@ pub struct Controller {
     previous_following_error: i32,
     /// There was no previous tick.
     fresh: bool,
+    filter: filter::State,
+    friction: friction::State,
     /// What is left of the last jump of the law, Q.30; a jump across the range of a command needs 33 bits.
     transfer: i64,
     /// The next demand is to start from this output.
@@ -65,6 +76,8 @@ impl Controller {
         Self {
             config,
             integral: 0,
+            filter: filter::State::new(),
+            friction: friction::State::new(),
             previous_error: 0,
             previous_following_error: 0,
             fresh: true,
@@ -113,15 +126,40 @@ impl Controller {
         ];
         self.previous_error = error;
         self.previous_following_error = following_error.to_bits();
-        self.integrate(error, active);
+        if !(self.config.rest_band >= error.saturating_abs() && is_at_rest(setpoint)) {
+            self.integrate(error, active);
+        }
 
         let integral = self.integral.wrapping_shr(INTEGRAL_SHIFT);
-        let law = saturate(self.config.weigh(&signals).wrapping_add(integral));
-        let command = self.without_jump(law);
+        let mut law = self.config.weigh(&signals).wrapping_add(integral);
+        if self.config.filter.is_on() {
+            law = self.filtered(law, setpoint);
+        }
+        if self.config.friction.is_on() {
+            let level = self.friction.step(&self.config.friction, setpoint);
+            law = law.wrapping_add(i64::from(level));
+        }
+        let command = self.without_jump(saturate(law));
         Demand {
             command: Command::from_bits(command),
             following_error,
         }
+    }
+
+    /// The feedback part through the filters, and what passes by them.
+    #[inline(never)]
+    fn filtered(&mut self, feedback: i64, setpoint: &Setpoint) -> i64 {
+        let config = &self.config;
+        if self.start_from.is_some() {
+            self.filter = filter::State::steady(&config.filter, feedback);
+        }
+        let filtered = self.filter.step(&config.filter, feedback);
+        let setpoints = [
+            setpoint.velocity.to_bits(),
+            setpoint.acceleration.to_bits(),
+            setpoint.jerk.to_bits(),
+        ];
+        config.ahead(&setpoints).wrapping_add(i64::from(filtered))
     }
 
     /// Adds the error to the integral unless the output is at a limit and the error drives into it.
@@ -148,6 +186,12 @@ impl Controller {
         }
         saturate(i64::from(law).wrapping_add(self.transfer))
     }
+}
+
+/// The setpoint stands.
+#[inline]
+const fn is_at_rest(setpoint: &Setpoint) -> bool {
+    setpoint.velocity.to_bits() | setpoint.acceleration.to_bits() | setpoint.jerk.to_bits() == 0
 }
 
 /// `value`·`factor`/2³¹ rounded towards zero, so that it ends at zero; |value| < 2³².

@@ -21,11 +21,12 @@ pub mod difference;
 pub mod exponential;
 pub mod gaussian;
 pub mod observer;
+pub mod paths;
 pub mod polynomial;
 pub mod simple;
 
 use crate::capture::Observation;
-use crate::edges::EdgeReader;
+use crate::edges::{EdgeReader, EdgeSample};
 use crate::units::{Acceleration, Command, Lag, Position, RangeError, Variance, Velocity, checked};
 
 /// What there is to estimate from in a tick.
@@ -35,9 +36,28 @@ pub struct Evidence<'a> {
     pub observation: &'a Observation<'a>,
     /// Reads the edges, for those that use them; it has taken note of the tick.
     pub edges: &'a EdgeReader<'a>,
+    /// The sample that the edges make; may be left out where no estimator [reads edges](EstimatorConfig::reads_edges).
+    pub sample: Option<EdgeSample>,
     /// What the drive was told for the tick just past; `None` where that is not known, as in a replay, or
     /// the drive was off.
     pub command: Option<Command>,
+}
+
+impl<'a> Evidence<'a> {
+    /// What `observation` tells, its edges read.
+    #[must_use]
+    pub fn new(
+        observation: &'a Observation<'a>,
+        edges: &'a EdgeReader<'a>,
+        command: Option<Command>,
+    ) -> Self {
+        Self {
+            observation,
+            edges,
+            sample: edges.sample(observation),
+            command,
+        }
+    }
 }
 
 /// What an estimator says after a tick; each quantity holds for the instant `lag` ticks before the
@@ -236,6 +256,12 @@ macro_rules! estimators {
                     return Ok(Some(Self::$variant($default?)));
                 })*
                 Ok(None)
+            }
+
+            /// The estimator needs [`Evidence::sample`].
+            #[must_use]
+            pub const fn reads_edges(&self) -> bool {
+                matches!(self, Self::Polynomial(_) | Self::Observer(_))
             }
 
             /// Lags of the estimate.

@@ -5,5 +5,6 @@
 
 pub mod model;
 pub mod placement;
+pub mod plant;
 
 pub use model::DriveModel;

@@ -44,6 +44,7 @@ pub fn any_config() -> impl Strategy<Value = Config> {
                 velocity_feedforward,
                 acceleration_feedforward,
                 jerk_feedforward,
+                feedforward_lead: 2.5,
             };
             Config::new(&gains, &lags, deadband, bias, transfer_ticks).ok()
         },

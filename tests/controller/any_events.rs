@@ -166,7 +166,8 @@ impl Watched {
             } => {
                 let before = self.limit;
                 self.axis
-                    .reconfigure(config(estimator, controller, limit, slew));
+                    .reconfigure(config(estimator, controller, limit, slew))
+                    .unwrap();
                 self.limit = Command::from_num(limit);
                 self.slew = Command::saturating_from_num(slew);
                 self.allowed = self.allowed.max(before);

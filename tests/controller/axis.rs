@@ -3,28 +3,31 @@
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
-use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
 use leadscrew::output;
-use leadscrew::params::AxisConfig;
+use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
-use leadscrew::uncertainty::EdgeErrors;
+use leadscrew::supervisor::SupervisorParams;
 use leadscrew::units::{Command, Position};
 
 use crate::signals::config as controller_config;
 
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
+    let estimator = EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator]);
+    let params = AxisParams {
+        // Captures here are such as no machine gives.
+        supervisor: SupervisorParams::widest(),
+        ..AxisParams::new(estimator.unwrap().unwrap())
+    };
     AxisConfig {
-        edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
-        estimator: EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
-            .unwrap()
-            .unwrap(),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
         limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        ..params.validate().unwrap()
     }
 }
 
@@ -115,7 +118,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         controller_config(&gains, 0.0, 0.1, 50.0),
         1.0,
         2.0,
-    ));
+    ))
+    .unwrap();
     let after = *axis.step(&still(30, true));
     assert_eq!(after.command, before.command);
     assert_eq!(
@@ -123,5 +127,8 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         Position::lit("30.5"),
         "no jump from zero"
     );
-    assert_eq!(axis.config().estimator.name(), "exponential");
+    assert_eq!(
+        axis.config().estimators.of(Choice::First).name(),
+        "exponential"
+    );
 }

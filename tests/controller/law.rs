@@ -34,6 +34,7 @@ fn gains() -> impl Strategy<Value = Gains> {
         gain(false),
         gain(false),
         gain(false),
+        prop_oneof![Just(0.0), 0.0..20.0_f64],
     )
         .prop_map(
             |(
@@ -45,6 +46,7 @@ fn gains() -> impl Strategy<Value = Gains> {
                 velocity_feedforward,
                 acceleration_feedforward,
                 jerk_feedforward,
+                feedforward_lead,
             )| {
                 Gains {
                     position,
@@ -55,6 +57,7 @@ fn gains() -> impl Strategy<Value = Gains> {
                     velocity_feedforward,
                     acceleration_feedforward,
                     jerk_feedforward,
+                    feedforward_lead,
                 }
             },
         )

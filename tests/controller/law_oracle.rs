@@ -80,14 +80,16 @@ impl Oracle {
             signals.estimate.acceleration.to_num(),
         );
         let gains = &self.gains;
+        let lead = gains.feedforward_lead;
         let velocity_then = velocity - lag_v * acceleration + lag_v * lag_v * jerk / 2.0;
         let acceleration_then = acceleration - lag_a * jerk;
         let law = gains.position * error
             + gains.derivative * change
             + gains.velocity * (velocity_then - seen_v)
             + gains.acceleration * (acceleration_then - seen_a)
-            + gains.velocity_feedforward * velocity
-            + gains.acceleration_feedforward * acceleration
+            + gains.velocity_feedforward
+                * (velocity + lead * acceleration + lead * lead / 2.0 * jerk)
+            + gains.acceleration_feedforward * (acceleration + lead * jerk)
             + gains.jerk_feedforward * jerk;
 
         // The same sorted by signal, in LSB per LSB: 30 bits of the command less those of the signal.
@@ -98,12 +100,18 @@ impl Oracle {
             (gains.acceleration, 6, seen_a),
             (gains.velocity_feedforward + gains.velocity, 10, velocity),
             (
-                gains.acceleration_feedforward + gains.acceleration - lag_v * gains.velocity,
+                gains.acceleration_feedforward
+                    + lead * gains.velocity_feedforward
+                    + gains.acceleration
+                    - lag_v * gains.velocity,
                 6,
                 acceleration,
             ),
             (
-                gains.jerk_feedforward + lag_v * lag_v / 2.0 * gains.velocity
+                gains.jerk_feedforward
+                    + lead * gains.acceleration_feedforward
+                    + lead * lead / 2.0 * gains.velocity_feedforward
+                    + lag_v * lag_v / 2.0 * gains.velocity
                     - lag_a * gains.acceleration,
                 1,
                 jerk,

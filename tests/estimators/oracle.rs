@@ -32,11 +32,11 @@ fn smoothed(config: &EstimatorConfig, counts: &[i64]) -> Vec<f64> {
 
 /// What an estimator says of a capture.
 fn update(estimator: &mut Estimator, unwrapper: &mut Unwrapper, capture: &Capture<'_>) -> Estimate {
-    estimator.update(&Evidence {
-        observation: &unwrapper.unwrap(capture),
-        edges: &EdgeReader::new(edges()),
-        command: None,
-    })
+    estimator.update(&Evidence::new(
+        &unwrapper.unwrap(capture),
+        &EdgeReader::new(edges()),
+        None,
+    ))
 }
 
 fn estimates(config: EstimatorConfig, counts: &[i64]) -> Vec<Estimate> {

@@ -14,5 +14,6 @@ mod motions;
 mod scenes;
 #[path = "../support/seeded.rs"]
 mod seeded;
+mod spindle;
 mod statistics;
 mod tachogenerator;

@@ -37,11 +37,7 @@ impl Listener {
 
     pub fn hear(&mut self, capture: &Capture<'_>, command: Option<Command>) -> Heard {
         let observation = self.unwrapper.unwrap(capture);
-        let evidence = Evidence {
-            observation: &observation,
-            edges: &self.edges,
-            command,
-        };
+        let evidence = Evidence::new(&observation, &self.edges, command);
         Heard {
             count: observation.count,
             delta: observation.delta,

@@ -2,11 +2,13 @@
 
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
     AxisConfig, AxisParams, ControllerParams, MotionParams, OutputParams, ParamError,
 };
+use leadscrew::supervisor::SupervisorParams;
 use leadscrew::units::RangeError;
 use proptest::prelude::*;
 
@@ -36,7 +38,7 @@ fn the_defaults_are_valid_with_every_estimator_at_every_usual_tick_rate() {
             }
             .validate()
             .unwrap();
-            assert_eq!(config.estimator.name(), *name);
+            assert_eq!(config.estimators.of(Choice::First).name(), *name);
         }
     }
 }
@@ -112,6 +114,7 @@ fn every_field_beyond_its_range_is_refused_by_name_value_and_range() {
     assert_fields_are_guarded::<ControllerParams>(|params, table| params.controller = table);
     assert_fields_are_guarded::<OutputParams>(|params, table| params.output = table);
     assert_fields_are_guarded::<MotionParams>(|params, table| params.motion = table);
+    assert_fields_are_guarded::<SupervisorParams>(|params, table| params.supervisor = table);
 }
 
 #[test]

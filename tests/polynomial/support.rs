@@ -29,11 +29,8 @@ impl Bench {
 
     pub fn update(&mut self, capture: &Capture<'_>) -> Estimate {
         let observation = self.unwrapper.unwrap(capture);
-        self.estimator.update(&Evidence {
-            observation: &observation,
-            edges: &self.edges,
-            command: None,
-        })
+        self.estimator
+            .update(&Evidence::new(&observation, &self.edges, None))
     }
 }
 

@@ -12,7 +12,7 @@ fn log_uniform(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
 }
 
 /// Limits of a machine: 100 Hz to 40 kHz, 10 to 1e5 d/mm, feeds to 60 m/min, 0.001 to 10 g, jerks to 5 000 m/s³.
-fn machine_limits() -> impl Strategy<Value = Limits> {
+pub fn machine_limits() -> impl Strategy<Value = Limits> {
     let tick_hz = log_uniform(100.0, 40_000.0);
     let counts_per_mm = log_uniform(10.0, 1e5);
     let feed = log_uniform(1.0, 60_000.0);
@@ -39,7 +39,7 @@ fn machine_limits() -> impl Strategy<Value = Limits> {
 }
 
 /// Any limits that the formats carry.
-fn format_limits() -> impl Strategy<Value = Limits> {
+pub fn format_limits() -> impl Strategy<Value = Limits> {
     (
         log_uniform(1e-4, 2047.0),
         log_uniform(6e-6, 127.0),

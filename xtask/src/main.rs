@@ -58,7 +58,16 @@ fn done(result: Result<()>) -> Result<ExitCode> {
 /// The tables of the tests, then that of the bench.
 fn golden_tables() -> Result<()> {
     command::cargo(["test", "--package", "leadscrew"])
-        .words(&["--test", "estimators", "--test", "accuracy"])
+        .words(&[
+            "--test",
+            "estimators",
+            "--test",
+            "accuracy",
+            "--test",
+            "docs",
+            "--test",
+            "supervisor",
+        ])
         .env("INSTA_UPDATE", "always")
         .run()?;
     bench::run(true)

@@ -103,11 +103,7 @@ impl RunSpec<'_> {
             let capture = self.stripped(scene.capture());
             let seen = bench.unwrapper.unwrap(&capture);
             bench.reader.note(&seen);
-            let evidence = Evidence {
-                observation: &seen,
-                edges: &bench.reader,
-                command: None,
-            };
+            let evidence = Evidence::new(&seen, &bench.reader, None);
             for (estimate, estimator) in estimates.iter_mut().zip(&mut bench.estimators) {
                 *estimate = estimator.update(&evidence);
             }

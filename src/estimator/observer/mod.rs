@@ -155,10 +155,10 @@ impl Estimator {
                 state.carry(evidence);
             }
         }
-        let Some(sample) = evidence.edges.sample(observation) else {
+        let Some(sample) = &evidence.sample else {
             return state.without_edge(config, observation);
         };
-        let class = state.see(config, observation, &sample);
+        let class = state.see(config, observation, sample);
         if state.motion.is_wild() {
             state.restart(observation.delta);
         }

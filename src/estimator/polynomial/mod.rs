@@ -124,7 +124,10 @@ impl Estimator {
     #[inline(never)]
     pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
         let Evidence {
-            observation, edges, ..
+            observation,
+            edges,
+            ref sample,
+            ..
         } = *evidence;
         let elapsed = edges.elapsed(observation);
         let way = (observation.count as i32).wrapping_sub(self.count);
@@ -135,8 +138,8 @@ impl Estimator {
             return self.rest(observation);
         }
         let steps = self.advance(elapsed);
-        let sample = match edges.sample(observation) {
-            Some(sample) => Some(self.on_grid(observation, elapsed, &sample)),
+        let sample = match sample {
+            Some(sample) => Some(self.on_grid(observation, elapsed, sample)),
             None => {
                 self.silence.lengthen(elapsed);
                 None

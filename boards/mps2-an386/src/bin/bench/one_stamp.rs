@@ -39,11 +39,7 @@ pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
             ..Capture::default()
         };
         let observation = unwrapper.unwrap(&capture);
-        let evidence = Evidence {
-            observation: &observation,
-            edges: &edges,
-            command: None,
-        };
+        let evidence = Evidence::new(&observation, &edges, None);
         for (reader, samples) in readers.iter_mut().flatten().zip(table.iter_mut()) {
             let cost = counter.count(|| reader.update(&evidence).velocity);
             // A window that is not full yet costs less.

@@ -95,11 +95,7 @@ impl Staged {
             return;
         };
         self.edges.note(&observation);
-        let evidence = Evidence {
-            observation: &observation,
-            edges: &self.edges,
-            command: Some(self.output.command()),
-        };
+        let evidence = Evidence::new(&observation, &self.edges, Some(self.output.command()));
         let mut estimates = [None; ESTIMATORS];
         let mut estimator_counts = [0; ESTIMATORS];
         for ((estimator, estimate), count) in self

@@ -1,23 +1,17 @@
-//! Runs that the host and the firmware share: what is commanded at which tick.
-
-use core::fmt;
+//! The standard run: a move there and back.
 
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::hal::Encoder;
-use leadscrew::params::{AxisConfig, AxisParams, MotionParams, ParamError};
-use leadscrew::setpoint::profile::{PlanError, Profile};
-use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::params::{AxisConfig, AxisParams, ParamError};
+use leadscrew::setpoint::profile::Profile;
 use leadscrew::telemetry::Record;
-use leadscrew::tuning::DriveModel;
-use leadscrew::units::{AxisScale, Position, checked};
+use leadscrew::units::{Position, checked};
 
+use super::error::ScenarioError;
+use super::tuning::{BANDWIDTH_RAD_PER_S, tuned_axis, tuned_estimator};
 use crate::machine::{Machine, MachineParams};
 use crate::trace::TraceDigest;
-
-/// Bandwidth of the loop with an estimator that lags by some five ticks of 1 ms, rad/s.
-pub const BANDWIDTH_RAD_PER_S: f64 = 35.0;
 
 /// A move there and back: enable, wait, move, wait, move back, wait.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,12 +49,7 @@ impl MoveAndBack {
         estimator: EstimatorConfig,
         mapped: bool,
     ) -> Result<EstimatorConfig, ParamError> {
-        if !matches!(estimator, EstimatorConfig::Observer(_)) {
-            return Ok(estimator);
-        }
-        let scale = AxisScale::new(machine.mount.counts_per_mm, self.tick_hz)?;
-        let config = observer::Config::new(&observer_params(machine, mapped), scale)?;
-        Ok(EstimatorConfig::Observer(config))
+        tuned_estimator(machine, self.tick_hz, estimator, mapped)
     }
 
     /// An axis tuned on the drive's nominal figures, for this move on `machine`.
@@ -72,86 +61,13 @@ impl MoveAndBack {
         machine: &MachineParams,
         estimator: EstimatorConfig,
     ) -> Result<AxisParams, ParamError> {
-        let drive = DriveModel::second_order(machine.drive.natural_period_s, machine.drive.damping);
-        Ok(AxisParams {
-            tick_hz: self.tick_hz,
-            timer_hz: machine.encoder.encoder.timer_hz,
-            motion: MotionParams {
-                counts_per_mm: machine.mount.counts_per_mm,
-                full_command_feed_mm_per_min: machine.drive.full_command_feed_mm_per_min,
-                max_feed_mm_per_min: self.feed_mm_per_min,
-                ..MotionParams::default()
-            },
-            controller: drive.place_poles(BANDWIDTH_RAD_PER_S)?,
-            ..AxisParams::new(estimator)
-        })
-    }
-}
-
-/// What an observer is to count on, on `machine`; with a map of its encoder (`mapped`), what such a map leaves.
-#[must_use]
-pub fn observer_params(machine: &MachineParams, mapped: bool) -> ObserverParams {
-    let (drive, disc, encoder) = (
-        &machine.drive,
-        &machine.encoder.disc,
-        &machine.encoder.encoder,
-    );
-    let params = ObserverParams {
-        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
-        natural_period_s: drive.natural_period_s,
-        damping: drive.damping,
-        delay_s: drive.delay_s,
-        offset: drive.offset,
-        ..ObserverParams::default()
-    };
-    if mapped {
-        return params;
-    }
-    let edge_variance = encoder.noise_d * encoder.noise_d
-        + disc.line_sigma_d * disc.line_sigma_d
-        + disc.edge_sigma_d * disc.edge_sigma_d
-        + disc.phase_offset_d * disc.phase_offset_d / 3.0;
-    // Slopes add up as squares; that of the second harmonic is twice as steep.
-    let second = 2.0 * disc.second_harmonic_d;
-    let waves = disc.eccentricity_d * disc.eccentricity_d + second * second;
-    ObserverParams {
-        edge_noise_d: libm::sqrt(edge_variance).max(LEAST_EDGE_NOISE_D),
-        time_noise_s: encoder.noise_s,
-        map_residual_d: libm::sqrt(waves / 2.0),
-        map_wave_mm: disc.edges_per_revolution / machine.mount.counts_per_mm,
-        ..params
-    }
-}
-
-/// Edge noise that even an ideal encoder is given: what the timer's clock leaves at 150 d/tick.
-const LEAST_EDGE_NOISE_D: f64 = 0.002;
-
-/// Why a scenario cannot run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ScenarioError {
-    /// A parameter is out of range.
-    Param(ParamError),
-    /// The move cannot be planned.
-    Plan(PlanError),
-    /// The axis did not take a move.
-    Queue(QueueError),
-}
-
-impl fmt::Display for ScenarioError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Param(error) => error.fmt(f),
-            Self::Plan(error) => error.fmt(f),
-            Self::Queue(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for ScenarioError {}
-
-impl<E: Into<ParamError>> From<E> for ScenarioError {
-    fn from(error: E) -> Self {
-        Self::Param(error.into())
+        tuned_axis(
+            machine,
+            self.tick_hz,
+            self.feed_mm_per_min,
+            BANDWIDTH_RAD_PER_S,
+            estimator,
+        )
     }
 }
 

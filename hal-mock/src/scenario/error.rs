@@ -1,0 +1,43 @@
+//! Why a scenario cannot run.
+
+use core::fmt;
+
+use leadscrew::params::ParamError;
+use leadscrew::setpoint::profile::PlanError;
+use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::supervisor::ClearError;
+
+/// Why a scenario cannot run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ScenarioError {
+    /// A parameter is out of range.
+    Param(ParamError),
+    /// The move cannot be planned.
+    Plan(PlanError),
+    /// The axis did not take a move.
+    Queue(QueueError),
+    /// The axis does not clear its fault.
+    Clear(ClearError),
+    /// There is no estimator of the name.
+    NoSuchEstimator,
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Param(error) => error.fmt(f),
+            Self::Plan(error) => error.fmt(f),
+            Self::Queue(error) => error.fmt(f),
+            Self::Clear(error) => error.fmt(f),
+            Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
+        }
+    }
+}
+
+impl core::error::Error for ScenarioError {}
+
+impl<E: Into<ParamError>> From<E> for ScenarioError {
+    fn from(error: E) -> Self {
+        Self::Param(error.into())
+    }
+}

@@ -1,0 +1,28 @@
+//! Runs that the host and the firmware share: what is commanded, and what goes wrong, at which tick.
+//!
+//! [`MoveAndBack`] is the standard run, a [`Scenario`] any other one. A scenario states in physical units what a file
+//! of the host says or a constant of the firmware; a [`Runner`] steps its [`World`] and its axis.
+
+pub mod action;
+mod definition;
+mod error;
+mod move_and_back;
+mod operator;
+mod plant;
+mod runner;
+mod sections;
+mod tuning;
+mod world;
+
+pub use action::{Action, Ask, EncoderTrouble, Interference, Timed, Trouble};
+pub use definition::{Base, MAX_DURATION_S, Scenario, Setting, tick_at};
+pub use error::ScenarioError;
+pub use move_and_back::{MoveAndBack, Script, Setup, Simulation, TimedMove};
+pub use operator::Operator;
+pub use plant::Plant;
+pub use runner::{Happening, Runner};
+pub use sections::{
+    BOARD_SECTIONS, MACHINE_SECTIONS, Visitor, visit_axis, visit_machine, visit_plant,
+};
+pub use tuning::{BANDWIDTH_RAD_PER_S, observer_params, tuned_axis, tuned_estimator};
+pub use world::World;

@@ -1,0 +1,218 @@
+//! Which estimator serves which path: velocity and acceleration of the feedback, its position, and what is shown.
+//!
+//! ```text
+//! edges ─► sample, once a tick ─┬─► first  ─┬─► feedback: velocity, acceleration, position
+//!                               └─► second ─┴─► display
+//! ```
+//!
+//! One estimator serves all paths unless a second one is given; a second one costs its own update alone, since
+//! the sample of the tick's edges is made once.
+
+use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence};
+use crate::units::{Position, RangeError, Velocity, checked};
+
+/// One of the estimators.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// The first, which is always there.
+    #[default]
+    First,
+    /// The second.
+    Second,
+}
+
+/// What the loop takes for the axis's position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PositionFeedback {
+    /// The middle of the count.
+    #[default]
+    Count,
+    /// The position that the velocity's estimator gives, which is to have no lag: the encoder map is in it.
+    Estimate,
+}
+
+/// Estimators by path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Paths {
+    /// Velocity of the feedback.
+    pub velocity: Choice,
+    /// Acceleration of the feedback.
+    pub acceleration: Choice,
+    /// What the axis gives out.
+    pub display: Choice,
+    /// Position of the feedback.
+    pub position: PositionFeedback,
+}
+
+/// The estimators of an axis and their paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    first: EstimatorConfig,
+    second: Option<EstimatorConfig>,
+    paths: Paths,
+}
+
+impl Config {
+    /// `first` and, where it is given, `second` on `paths`.
+    ///
+    /// # Errors
+    /// [`RangeError`] for a path to a second estimator that is not given, or a position that lags.
+    pub fn new(
+        first: EstimatorConfig,
+        second: Option<EstimatorConfig>,
+        paths: Paths,
+    ) -> Result<Self, RangeError> {
+        let used = [paths.velocity, paths.acceleration, paths.display];
+        let seconds = used.iter().filter(|path| **path == Choice::Second).count();
+        let most = if second.is_some() { 3.0 } else { 0.0 };
+        checked("paths to the second estimator", seconds as f64, 0.0, most)?;
+        let config = Self {
+            first,
+            second,
+            paths,
+        };
+        if paths.position == PositionFeedback::Estimate {
+            let lag: f64 = config.of(paths.velocity).lags().position.to_num();
+            checked("lag of the fed back position, ticks", lag, 0.0, 0.0)?;
+        }
+        Ok(config)
+    }
+
+    /// One estimator for all; the position is the count's.
+    #[must_use]
+    pub fn single(first: EstimatorConfig) -> Self {
+        Self {
+            first,
+            second: None,
+            paths: Paths::default(),
+        }
+    }
+
+    /// The estimator of a path.
+    #[must_use]
+    pub fn of(&self, choice: Choice) -> &EstimatorConfig {
+        match (choice, &self.second) {
+            (Choice::Second, Some(second)) => second,
+            _ => &self.first,
+        }
+    }
+
+    /// Which estimator serves which path.
+    #[must_use]
+    pub const fn paths(&self) -> &Paths {
+        &self.paths
+    }
+
+    /// How the velocity and the acceleration of the feedback lie behind.
+    #[must_use]
+    pub fn delay(&self) -> Delay {
+        let velocity = self.of(self.paths.velocity).delay();
+        let acceleration = self.of(self.paths.acceleration).delay();
+        Delay {
+            acceleration: acceleration.acceleration,
+            ..velocity
+        }
+    }
+
+    /// True if other estimators than those of `other` are there, or other paths: what cannot change in motion.
+    #[must_use]
+    pub fn differs_in_kind(&self, other: &Self) -> bool {
+        self.paths != other.paths || self.second != other.second
+    }
+
+    /// An estimator looks at the edges.
+    fn reads_edges(&self) -> bool {
+        self.first.reads_edges() || self.second.is_some_and(|second| second.reads_edges())
+    }
+}
+
+/// The estimators.
+#[derive(Clone, Debug)]
+pub struct Estimators {
+    first: Estimator,
+    second: Option<Estimator>,
+    paths: Paths,
+    reads_edges: bool,
+    /// What the feedback gets, where it is not what is shown.
+    feedback: Estimate,
+}
+
+impl Estimators {
+    /// Estimators that wait for their first sample.
+    #[must_use]
+    pub fn new(config: &Config) -> Self {
+        Self {
+            first: Estimator::new(config.first),
+            second: config.second.map(Estimator::new),
+            paths: config.paths,
+            reads_edges: config.reads_edges(),
+            feedback: Estimate::default(),
+        }
+    }
+
+    /// Starts anew as after a long motion at `velocity`. Outside the tick.
+    pub fn prime(&mut self, velocity: Velocity) {
+        self.first.prime(velocity);
+        if let Some(second) = &mut self.second {
+            second.prime(velocity);
+        }
+    }
+
+    /// The first estimator.
+    #[must_use]
+    pub const fn first(&self) -> &Estimator {
+        &self.first
+    }
+
+    /// Takes what a tick has to tell; gives what is shown.
+    #[inline]
+    pub fn update(&mut self, evidence: &mut Evidence<'_>, display: &mut Estimate) {
+        if self.reads_edges {
+            evidence.sample = evidence.edges.sample(evidence.observation);
+        }
+        if let Some(second) = &mut self.second {
+            let second = second.update(evidence);
+            let first = self.first.update(evidence);
+            self.share([first, second], display);
+        } else {
+            *display = self.first.update(evidence);
+        }
+    }
+
+    /// Parts two estimates by path.
+    #[inline(never)]
+    fn share(&mut self, estimates: [Estimate; 2], display: &mut Estimate) {
+        let [first, second] = &estimates;
+        let of = |choice| match choice {
+            Choice::First => first,
+            Choice::Second => second,
+        };
+        let (velocity, acceleration) = (of(self.paths.velocity), of(self.paths.acceleration));
+        self.feedback = Estimate {
+            acceleration: acceleration.acceleration,
+            ..*velocity
+        };
+        *display = *of(self.paths.display);
+    }
+
+    /// What the feedback gets, when `display` is shown: an estimate, and the position for the loop; `count` is the middle
+    /// of the count.
+    #[inline]
+    #[must_use]
+    pub fn feedback<'e>(
+        &'e self,
+        display: &'e Estimate,
+        count: Position,
+    ) -> (&'e Estimate, Position) {
+        let estimate = if self.second.is_some() {
+            &self.feedback
+        } else {
+            display
+        };
+        let position = match self.paths.position {
+            PositionFeedback::Count => count,
+            PositionFeedback::Estimate => estimate.position,
+        };
+        (estimate, position)
+    }
+}

@@ -1,0 +1,21 @@
+//! Documents that are made from the code: each is what the code says now. `cargo xtask golden` writes them anew.
+
+mod parameters;
+
+use std::path::Path;
+
+/// Compares `text` with the document `name` under `docs`, or writes it there.
+#[track_caller]
+fn reviewed(name: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("docs")
+        .join(name);
+    if std::env::var_os("INSTA_UPDATE").is_some_and(|update| update == "always") {
+        std::fs::write(&path, text).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        found == text,
+        "docs/{name} is not what the code says: run `cargo xtask golden` and review it"
+    );
+}
