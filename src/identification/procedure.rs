@@ -13,6 +13,7 @@ use super::recorder::{Recorder, Records};
 use super::refusal::Refusal;
 use super::{conclusion, seed};
 use crate::axis::{Axis, StartError};
+use crate::supervisor::Fault;
 use crate::units::AxisScale;
 
 /// Fewest records that there must be room for.
@@ -155,12 +156,28 @@ impl<'w> Identification<'w> {
         if self.running {
             return Ok(None);
         }
+        if let Some(fault) = axis.outputs().fault {
+            self.judge(fault)?;
+        }
         match self.next(axis.outputs().count, ending)? {
             Next::Run(program) => self.start(axis, program, 0).map(|()| None),
             Next::Done(identified) => {
                 axis.release_experiment();
                 Ok(Some(identified))
             }
+        }
+    }
+
+    /// What a fault that cut the proof of the sign short says of it.
+    fn judge(&self, fault: Fault) -> Result<(), Refusal> {
+        let [moved_d, _] = pulses(self.recorder.records());
+        let level = self.level;
+        match (self.stage, fault) {
+            (Some(Stage::Proof), Fault::EncoderLoss) => Err(Refusal::NoMotion { level, moved_d }),
+            (Some(Stage::Proof), Fault::MotionAgainstCommand) => {
+                Err(Refusal::WrongPolarity { level, moved_d })
+            }
+            _ => Ok(()),
         }
     }
 

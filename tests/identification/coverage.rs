@@ -5,7 +5,7 @@ use leadscrew_hal_mock::machine::MachineParams;
 
 use crate::support::Bench;
 
-const SEEDS: u64 = 12;
+const SEEDS: u64 = 10;
 
 /// Counts figures within 2σ of the truth, over seeds.
 fn covered(machine: impl Fn(u64) -> MachineParams) -> Vec<(&'static str, u64)> {
