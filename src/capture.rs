@@ -105,6 +105,12 @@ impl<'a> Observation<'a> {
         self.capture.probe.map(|latch| self.unwrap_latch(latch))
     }
 
+    /// The home switch, if it was actuated in this tick.
+    #[must_use]
+    pub fn home(&self) -> Option<UnwrappedLatch> {
+        self.capture.home.map(|latch| self.unwrap_latch(latch))
+    }
+
     /// A latch lies before the sample just taken, by less than half the range of either counter.
     fn unwrap_latch(&self, latch: Latch) -> UnwrappedLatch {
         let back = self.capture.count.wrapping_sub(latch.count).cast_signed();

@@ -232,6 +232,22 @@ impl<'m> EdgeReader<'m> {
         }
     }
 
+    /// Error of the boundary at which the index of the tick last [noted](Self::note) was latched, Q.16 d; 0 without an
+    /// index or a map tied to it.
+    #[must_use]
+    pub fn index_error(&self, observation: &Observation<'_>) -> i32 {
+        let (Some(tie), Some(latch)) = (&self.tie, observation.index()) else {
+            return 0;
+        };
+        if tie.state() != MapState::Tied || observation.delta == 0 {
+            return 0;
+        }
+        let direction = Direction::of(observation.delta);
+        let above = i64::from(direction == Direction::Backward);
+        let boundary = latch.count.wrapping_add(above);
+        tie.error(boundary.wrapping_sub(observation.count) as i32, direction)
+    }
+
     /// Time from the previous sampling instant to this one.
     #[must_use]
     pub const fn elapsed(&self, observation: &Observation<'_>) -> Span {

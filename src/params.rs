@@ -6,17 +6,21 @@ pub use sections::SectionVisitor;
 
 use core::fmt;
 
+use crate::compensation::CompensationParams;
 use crate::controller::params::LawParams;
 pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
+use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
+use crate::setpoint::sources::{self, SourceParams};
+use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, RangeError};
-use crate::{controller, output};
+use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -46,6 +50,14 @@ pub struct AxisParams {
     pub friction: FrictionParams,
     /// Limits of the output.
     pub output: OutputParams,
+    /// Compensation of the screw.
+    pub compensation: CompensationParams,
+    /// What the axis is watched for.
+    pub supervisor: SupervisorParams,
+    /// Homing.
+    pub homing: HomingParams,
+    /// Sources of setpoints other than planned moves.
+    pub sources: SourceParams,
 }
 
 parameter_table! {
@@ -127,8 +139,16 @@ pub struct AxisConfig {
     pub controller: controller::Config,
     /// Limits of the output.
     pub output: output::Config,
-    /// Limits of moves.
+    /// Limits of moves: those of the axis less what the compensation takes.
     pub limits: Limits,
+    /// Compensation of the screw.
+    pub compensation: compensation::Config,
+    /// What the axis is watched for.
+    pub supervisor: supervisor::Config,
+    /// Homing.
+    pub homing: homing::Config,
+    /// Sources of setpoints other than planned moves.
+    pub sources: sources::Config,
 }
 
 impl AxisParams {
@@ -147,6 +167,10 @@ impl AxisParams {
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
             output: OutputParams::default(),
+            compensation: CompensationParams::default(),
+            supervisor: SupervisorParams::default(),
+            homing: HomingParams::default(),
+            sources: SourceParams::default(),
         }
     }
 
@@ -161,11 +185,16 @@ impl AxisParams {
         let scale = AxisScale::new(self.motion.counts_per_mm, self.tick_hz)?;
         let full_velocity = scale.velocity_from_feed(self.motion.full_command_feed_mm_per_min)?;
         let estimators = EstimatorsConfig::new(self.estimator, self.second_estimator, self.paths)?;
+        let limits = self.motion.limits(scale)?;
+        let compensation = self.compensation.quantise(scale, &limits)?;
+        let limits = compensation.setpoint_limits(&limits)?;
         Ok(AxisConfig {
             edges,
             scale,
             estimators,
-            limits: self.motion.limits(scale)?,
+            limits,
+            compensation,
+            homing: self.homing.quantise(scale, &limits)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
@@ -173,6 +202,12 @@ impl AxisParams {
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,
+            sources: self.sources.quantise(scale, limits, edges)?,
+            supervisor: self.supervisor.quantise(
+                scale,
+                full_velocity,
+                scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+            )?,
         })
     }
 }

@@ -111,11 +111,14 @@ impl Board {
         })
     }
 
-    /// From the next tick on the encoder has `fault` in `ticks`, counted from that tick as 0.
+    /// From the next tick on the encoder has `fault` in `ticks`, counted from that tick as 0, in place of any other.
     ///
     /// # Errors
     /// A figure of the fault out of range.
     pub fn break_encoder(&mut self, fault: Fault, ticks: Range<u32>) -> Result<(), RangeError> {
+        if let Some(faulty) = &mut self.faulty {
+            return faulty.inject(fault, ticks);
+        }
         let capture = self.source();
         self.faulty = Some(FaultyEncoder::new(fault, ticks, &capture)?);
         Ok(())

@@ -86,14 +86,15 @@ impl FaultyEncoder {
         })
     }
 
-    /// Has `fault` instead, for `ticks` from the next capture on. What the last fault did to the count stays.
+    /// Has `fault` instead, in `ticks` counted from the next capture on as 0. What the last fault did to the count stays.
     ///
     /// # Errors
     /// A figure of the fault out of range.
-    pub fn inject(&mut self, fault: Fault, ticks: u32) -> Result<(), RangeError> {
+    pub fn inject(&mut self, fault: Fault, ticks: Range<u32>) -> Result<(), RangeError> {
         fault.check()?;
+        let after = |tick: u32| self.tick.saturating_add(tick);
+        self.ticks = after(ticks.start)..after(ticks.end);
         self.fault = fault;
-        self.ticks = self.tick..self.tick.saturating_add(ticks);
         self.interference = None;
         Ok(())
     }

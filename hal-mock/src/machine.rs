@@ -172,6 +172,12 @@ impl Machine {
         }
     }
 
+    /// The screw at the sampling instant: where the encoder is, unless its coupling has play or slips.
+    #[must_use]
+    pub fn screw(&self) -> State {
+        self.turned.0.at(1.0 - self.encoder.sampling_advance())
+    }
+
     /// Mean reading of the tachogenerator over the last tick, d/tick. Call it once a tick, or never: the
     /// oscilloscope costs nothing while nobody looks.
     pub fn read_tachogenerator(&mut self) -> f64 {

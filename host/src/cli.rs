@@ -29,7 +29,7 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Moves a simulated axis there and back and reports how well it went
+    /// Moves a simulated axis there and back, or runs a scenario, and reports how well it went
     Sim(SimArgs),
     /// Decodes a logic-analyser capture of an encoder and runs the estimators on it
     Replay(ReplayArgs),
@@ -84,6 +84,13 @@ pub struct SimArgs {
     /// The machine: 16k20f3, 16k20f3-bare or a TOML file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
     pub machine: String,
+    /// Run what FILE says instead of a move there and back, and fail unless all that it expects comes true
+    #[arg(
+        long,
+        value_name = "FILE.toml",
+        conflicts_with_all = ["machine", "move_mm", "feed", "tick_hz", "estimator", "seed", "dump_machine"]
+    )]
+    pub scenario: Option<PathBuf>,
     /// Distance of the move, mm; negative to start the other way
     #[arg(
         long,

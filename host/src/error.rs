@@ -15,9 +15,9 @@ pub enum CommandError {
     /// A capture cannot be read.
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
-    /// A machine file cannot be used.
+    /// A machine or a scenario file cannot be used.
     #[error(transparent)]
-    MachineFile(#[from] crate::machine_file::MachineFileError),
+    TomlFile(#[from] crate::toml_file::TomlFileError),
     /// An encoder map cannot be used.
     #[error(transparent)]
     MapFile(#[from] crate::map_file::MapFileError),

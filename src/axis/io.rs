@@ -5,7 +5,7 @@ use crate::estimator::Estimate;
 use crate::hal::{Capture, Lines, Reference};
 use crate::output::ActiveLimits;
 use crate::setpoint::Setpoint;
-use crate::supervisor::{Fault, State};
+use crate::supervisor::{Fault, FaultSet, State};
 use crate::units::{Command, Position};
 
 /// What a tick takes in.
@@ -52,10 +52,16 @@ pub struct Outputs {
     pub brake_released: bool,
     /// A motion is commanded.
     pub moving: bool,
+    /// The tool is to be retracted: a pass of a thread nears its end.
+    pub retract: bool,
     /// Where the supervisor stands.
     pub state: State,
     /// The fault that brought the axis to [`State::Fault`].
     pub fault: Option<Fault>,
+    /// Warnings since they were last cleared.
+    pub warnings: FaultSet,
+    /// Enable is asked for anew and refused: a fault is latched.
+    pub refused: bool,
     /// Limits that hold the command back.
     pub limits: ActiveLimits,
     /// Setpoint less measured position, d.

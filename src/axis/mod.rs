@@ -1,28 +1,33 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
+mod planned;
 mod reconfigure;
+mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 
-use crate::capture::{CaptureHealth, Unwrapper};
-use crate::compensation::Compensation;
+use crate::capture::{CaptureHealth, Observation, Unwrapper};
+use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
+use crate::homing::{HomeRefused, Homing, Sight};
+use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
-use crate::setpoint::profile::Profile;
+use crate::setpoint::Setpoint;
 use crate::setpoint::sources::Sources;
-use crate::setpoint::trajectory::QueueError;
-use crate::supervisor::{Permit, Review, Situation, Supervisor};
-use crate::units::Position;
+use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
+use crate::units::{Command, Position};
 
-/// One axis; `'m` is how long its encoder map lives.
+/// One axis; `'m` is how long its encoder map and its screw table live.
 #[derive(Clone, Debug)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
@@ -30,9 +35,11 @@ pub struct Axis<'m> {
     estimators: Estimators,
     supervisor: Supervisor,
     sources: Sources,
-    compensation: Compensation,
+    homing: Homing,
+    compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -48,11 +55,13 @@ impl<'m> Axis<'m> {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
             estimators: Estimators::new(&config.estimators),
-            supervisor: Supervisor::new(),
-            sources: Sources::new(&config.limits),
-            compensation: Compensation::default(),
+            supervisor: Supervisor::new(config.supervisor),
+            sources: Sources::new(&config.limits, &config.sources),
+            homing: Homing::new(config.homing),
+            compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -83,29 +92,74 @@ impl<'m> Axis<'m> {
             .estimators
             .feedback(&outputs.estimate, observation.position());
 
+        let told = self.output.command();
+        let lines = self.homing.without_limit_left(inputs.lines);
         let permit = self.supervisor.permit(&Situation {
+            tick,
             enable: inputs.enable,
-            lines: &inputs.lines,
+            lines: &lines,
+            illegal: inputs.capture.illegal,
+            missed_ticks: inputs.missed_ticks,
+            readback: inputs.readback,
+            told,
         });
-        if !(was_enabled && permit > Permit::ZeroVolts) {
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let open_loop = self.is_open_loop();
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
+        let reference = &inputs.reference;
+        self.sources
+            .read_master(reference.master.as_ref(), lines.master_lost);
+        let commanded = if self.homing.is_active() {
+            self.step_homing(&observation, inputs, permit)
+        } else {
+            self.sources.step(tick, reference, permit)
+        };
         let outputs = &mut self.outputs;
-        let commanded = self.sources.step(tick, &inputs.reference, permit);
-        outputs.moving = self.sources.is_moving();
+        outputs.retract = self.sources.retract();
+        outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
         let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
-        let demand = self
+        let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
+            tick,
             moving: outputs.moving,
-            trouble: self.sources.trouble(),
+            trouble: self.sources.trouble().or(self.homing.trouble()),
+            lines: &lines,
+            observation: &observation,
+            estimate: &outputs.estimate,
+            setpoint: &outputs.setpoint,
+            following_error: outputs.following_error.to_bits(),
+            told,
+            active,
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
+        if self.supervisor.is_context_due() {
+            self.note_context(position, told);
+        }
+        let outputs = &mut self.outputs;
+        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
@@ -113,31 +167,110 @@ impl<'m> Axis<'m> {
         };
         outputs.limits = self.output.active_limits();
         outputs.enabled = permit > Permit::Off;
-        outputs.brake_released = outputs.enabled;
+        outputs.brake_released = self.supervisor.brake_released();
         outputs.state = self.supervisor.state();
         outputs.fault = self.supervisor.fault();
-        outputs.reported = position;
+        outputs.warnings = self.supervisor.warnings();
+        outputs.refused = self.supervisor.is_refused();
+        let is_index_right = self.homing.check_index(&observation);
+        if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
+            self.homing.lose_origin();
+            self.compensation.set_origin(None);
+            self.sources.set_travel(None);
+        }
+        outputs.reported = self.compensation.reported(position);
         outputs
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
     #[cold]
     fn begin(&mut self, position: Position) {
-        self.sources.hold(position);
+        self.homing.abort();
+        self.sources.hold(self.compensation.rest_at(position));
         self.controller.reset();
     }
 
-    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
+    /// Notes the context of the first fault.
+    #[cold]
+    fn note_context(&mut self, position: Position, told: Command) {
+        let Outputs {
+            estimate,
+            setpoint,
+            following_error,
+            ..
+        } = &self.outputs;
+        self.supervisor.note_context(&Context {
+            position,
+            velocity: estimate.velocity,
+            setpoint_position: setpoint.position,
+            setpoint_velocity: setpoint.velocity,
+            following_error: *following_error,
+            command: told,
+        });
+    }
+
+    /// Leaves the state Fault: the axis is then disabled, and may be enabled anew.
     ///
     /// # Errors
-    /// [`QueueError`]; the axis then goes on as it was.
-    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.outputs.enabled {
-            return Err(QueueError::Disabled);
+    /// [`ClearError`]; the fault then stays.
+    pub fn clear_fault(&mut self) -> Result<(), ClearError> {
+        self.supervisor.clear()
+    }
+
+    /// The supervisor: the first fault and its context, warnings, the peak of the following error.
+    #[must_use]
+    pub const fn supervisor(&self) -> &Supervisor {
+        &self.supervisor
+    }
+
+    /// The same, to report faults found between ticks and to reset warnings and peak.
+    pub const fn supervisor_mut(&mut self) -> &mut Supervisor {
+        &mut self.supervisor
+    }
+
+    /// A tick of homing, or its end where it may not go on: the sources go on from there.
+    #[cold]
+    fn step_homing(
+        &mut self,
+        observation: &Observation<'_>,
+        inputs: &Inputs<'_>,
+        permit: Permit,
+    ) -> Setpoint {
+        if permit < Permit::Follow {
+            self.homing.abort();
+            return self
+                .sources
+                .step(self.tick.wrapping_sub(1), &inputs.reference, permit);
         }
-        self.sources
-            .trajectory
-            .queue(profile, start, self.tick.wrapping_sub(1))
+        let setpoint = self.homing.step(&Sight {
+            observation,
+            lines: &inputs.lines,
+            index_error: self.edges.index_error(observation),
+        });
+        self.sources.take_over(&setpoint);
+        self.compensation.set_origin(self.homing.origin());
+        setpoint
+    }
+
+    /// Begins homing with the next tick. The origin of before is given up, and with it, by its slew, the
+    /// compensation of the screw.
+    ///
+    /// # Errors
+    /// [`HomeRefused`] unless the axis is ready and at rest.
+    pub fn home(&mut self) -> Result<(), HomeRefused> {
+        if self.outputs.state != State::Ready || self.outputs.moving {
+            return Err(HomeRefused::NotReady);
+        }
+        self.homing.start(self.sources.last(), self.outputs.count);
+        self.compensation.set_origin(None);
+        self.sources.set_travel(None);
+        Ok(())
+    }
+
+    /// Homing: where it stands, what it found, and why it failed.
+    #[must_use]
+    pub const fn homing(&self) -> &Homing {
+        &self.homing
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
@@ -158,7 +291,10 @@ impl<'m> Axis<'m> {
         self.controller
             .reconfigure(config.controller, self.output.command());
         self.output.reconfigure(config.output);
-        self.sources.reconfigure(&config.limits);
+        self.supervisor.reconfigure(config.supervisor);
+        self.sources.reconfigure(&config.limits, &config.sources);
+        self.compensation.reconfigure(config.compensation);
+        self.homing.reconfigure(config.homing);
         self.config = config;
         Ok(())
     }
@@ -167,6 +303,28 @@ impl<'m> Axis<'m> {
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
+    }
+
+    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
+    /// soon as an origin is known.
+    ///
+    /// # Errors
+    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
+    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
+        self.compensation.set_table(table)
+    }
+
+    /// The compensation of the screw, and the origin that it counts from.
+    #[must_use]
+    pub const fn compensation(&self) -> &Compensation<'m> {
+        &self.compensation
+    }
+
+    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
+    /// whose place is known without homing. The loop goes on as it was.
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.homing.set_origin(origin);
+        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.
@@ -204,4 +362,15 @@ impl<'m> Axis<'m> {
     pub const fn capture_health(&self) -> CaptureHealth {
         self.unwrapper.health()
     }
+}
+
+/// True for a fault after which the count may not tell the place any more.
+const fn loses_place(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::SignalLoss
+            | Fault::IllegalTransitions
+            | Fault::IndexInconsistent
+            | Fault::EncoderLoss
+    )
 }

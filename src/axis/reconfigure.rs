@@ -13,6 +13,8 @@ pub enum ReconfigureError {
     EdgeTimer,
     /// Which estimators there are and which paths they serve: the fed back position would jump.
     Estimators,
+    /// Ratios and the second encoder: what is followed would jump.
+    Sources,
 }
 
 impl ReconfigureError {
@@ -27,6 +29,8 @@ impl ReconfigureError {
             Err(Self::EdgeTimer)
         } else if now.estimators.differs_in_kind(&next.estimators) {
             Err(Self::Estimators)
+        } else if now.sources != next.sources {
+            Err(Self::Sources)
         } else {
             Ok(())
         }
@@ -39,6 +43,7 @@ impl fmt::Display for ReconfigureError {
             Self::Scale => "counts_per_mm and tick_hz",
             Self::EdgeTimer => "timer_hz",
             Self::Estimators => "the estimators and their paths",
+            Self::Sources => "the sources of setpoints",
         };
         write!(
             f,

@@ -19,5 +19,13 @@ impl AxisParams {
         visitor.section("filter", &mut self.filter);
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);
+        visitor.section("step_dir", &mut self.sources.step_dir);
+        visitor.section("analog", &mut self.sources.analog);
+        visitor.section("master", &mut self.sources.master);
+        visitor.section("gearing", &mut self.sources.gearing);
+        visitor.section("thread", &mut self.sources.thread);
+        visitor.section("compensation", &mut self.compensation);
+        visitor.section("homing", &mut self.homing);
+        visitor.section("supervisor", &mut self.supervisor);
     }
 }

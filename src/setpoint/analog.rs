@@ -7,6 +7,7 @@
 use super::Setpoint;
 use super::follower::{self, Follower};
 use super::profile::Limits;
+use super::ratio::Factor;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::units::{AxisScale, Command, Position, RangeError, Velocity};
@@ -29,11 +30,15 @@ pub struct Config {
     /// 2⁻³⁰ of full scale.
     offset: i32,
     deadband: i32,
-    /// Velocity at a command of one beyond the deadband, 2⁻²⁰ d/tick.
-    scale: i32,
+    /// From a command beyond the deadband, Q2.30, to a velocity, Q12.20 d/tick.
+    scale: Factor,
     /// Largest velocity, 2⁻²⁰ d/tick.
     largest: i32,
 }
+
+/// Power of two between the formats.
+const COMMAND_TO_VELOCITY: i32 =
+    Velocity::FRAC_NBITS.cast_signed() - Command::FRAC_NBITS.cast_signed();
 
 impl AnalogParams {
     /// Validates and quantises, for an axis whose largest velocity is `largest`.
@@ -47,7 +52,10 @@ impl AnalogParams {
         Ok(Config {
             offset: command(self.analog_offset),
             deadband: command(self.analog_deadband),
-            scale: Velocity::saturating_from_num(velocity / (1.0 - self.analog_deadband)).to_bits(),
+            scale: Factor::new(libm::ldexp(
+                velocity / (1.0 - self.analog_deadband),
+                COMMAND_TO_VELOCITY,
+            )),
             largest: largest.to_bits(),
         })
     }
@@ -65,10 +73,7 @@ impl Config {
         } else {
             0
         };
-        // Below 2³³ in size: a command is ±2, a velocity ±2 048.
-        let velocity = i64::from(beyond)
-            .wrapping_mul(i64::from(self.scale))
-            .wrapping_shr(Command::FRAC_NBITS);
+        let velocity = self.scale.of(beyond);
         let largest = i64::from(self.largest);
         Velocity::from_bits(velocity.clamp(largest.wrapping_neg(), largest) as i32)
     }

@@ -1,16 +1,24 @@
 //! Where the axis should be: sources of setpoints.
 //!
-//! [`profile`] plans a move outside the tick, [`trajectory`] evaluates the plan in the tick.
+//! [`plan`] plans a motion outside the tick, [`trajectory`] evaluates the plan in the tick.
 //! [`follower`] goes to a velocity within limits of acceleration and jerk without a plan: for stops and for sources
 //! that others move. [`sources`] chooses.
 
 pub mod analog;
 pub mod follower;
+pub mod gearing;
+pub mod limits;
+pub mod master;
+pub mod plan;
+pub mod planner;
 pub mod profile;
 pub mod ratio;
+pub mod run_up;
 pub mod sources;
 pub mod step_dir;
+pub mod thread;
 pub mod trajectory;
+pub mod travel;
 
 use crate::units::{Acceleration, Jerk, Position, Velocity};
 

@@ -22,9 +22,48 @@ pub struct Ratio {
     /// 2¹⁶·N − D·[`Self::per_count`]: 0 to D − 1.
     rest: u32,
     denominator: u32,
-    /// N/D·2^`factor_shift`, 2³⁰ to 2³¹ in size, for derivatives.
-    factor: i32,
-    factor_shift: u32,
+    /// N/D, for derivatives.
+    factor: Factor,
+}
+
+/// A factor, right to 2⁻³⁰ of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Factor {
+    /// The factor·2^`shift`, 2³⁰ to 2³¹ in size.
+    mantissa: i32,
+    shift: u32,
+}
+
+impl Factor {
+    /// For zero, or a size of 2⁻³² to 2²⁹.
+    pub(super) fn new(value: f64) -> Self {
+        let exponent = libm::floor(libm::log2(libm::fabs(value)));
+        let shift = 30_i32.wrapping_sub(exponent.clamp(-32.0, 29.0) as i32);
+        Self {
+            mantissa: saturate(libm::round(libm::ldexp(value, shift)) as i64),
+            shift: shift.cast_unsigned(),
+        }
+    }
+
+    /// A product with the fractional bits of `value`, to nearest.
+    #[inline]
+    #[must_use]
+    pub fn of(&self, value: i32) -> i64 {
+        let half = 1_i64.wrapping_shl(self.shift.wrapping_sub(1));
+        i64::from(value)
+            .wrapping_mul(i64::from(self.mantissa))
+            .wrapping_add(half)
+            .wrapping_shr(self.shift)
+    }
+
+    /// The factor.
+    #[must_use]
+    pub fn to_num(&self) -> f64 {
+        libm::ldexp(
+            f64::from(self.mantissa),
+            self.shift.cast_signed().wrapping_neg(),
+        )
+    }
 }
 
 /// What an exact division leaves over.
@@ -56,16 +95,11 @@ impl Ratio {
         // 1 or more.
         let per_count = scaled.checked_div_euclid(under).unwrap_or(0);
         let rest = scaled.wrapping_sub(per_count.wrapping_mul(under));
-        // Size 2ᵉ to 2ᵉ⁺¹, e from −16 to 10.
-        let exponent = libm::floor(libm::log2(size)) as i32;
-        let shift = 30_i32.wrapping_sub(exponent);
-        let factor = libm::round(libm::ldexp(over / denominator.1, shift));
         Ok(Self {
             per_count,
             rest: rest as u32,
             denominator: under as u32,
-            factor: saturate(factor as i64),
-            factor_shift: shift.cast_unsigned(),
+            factor: Factor::new(over / denominator.1),
         })
     }
 
@@ -106,20 +140,13 @@ impl Ratio {
     #[inline]
     #[must_use]
     pub fn of(&self, value: i32) -> i64 {
-        let half = 1_i64.wrapping_shl(self.factor_shift.wrapping_sub(1));
-        i64::from(value)
-            .wrapping_mul(i64::from(self.factor))
-            .wrapping_add(half)
-            .wrapping_shr(self.factor_shift)
+        self.factor.of(value)
     }
 
     /// d a count.
     #[must_use]
     pub fn to_num(&self) -> f64 {
-        libm::ldexp(
-            f64::from(self.factor),
-            self.factor_shift.cast_signed().wrapping_neg(),
-        )
+        self.factor.to_num()
     }
 }
 

@@ -16,7 +16,7 @@ use super::ratio::{Carried, MAX_STEP, Ratio};
 use crate::estimator::saturate;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
-use crate::units::{Acceleration, AxisScale, Jerk, Position, RangeError, Velocity, checked};
+use crate::units::{Acceleration, AxisScale, Jerk, Position, RangeError, Velocity};
 
 /// Longest average, ticks.
 const MAX_TICKS: usize = 32;
@@ -30,7 +30,7 @@ parameter_table! {
         step_ratio_counts: 1.0, "d", -1048576.0..=1048576.0;
         /// Electronic gear, denominator
         step_ratio_steps: 1.0, "steps", 1.0..=1048576.0;
-        /// Length of each of three averages; taken as the nearest of 1, 2, 4, 8, 16 and 32 ticks
+        /// Length of each of three averages; the nearest of 1, 2, 4, 8, 16 and 32 ticks is taken
         step_smoothing_s: 0.008, "s", 0.0..=0.32;
     }
 }
@@ -56,15 +56,7 @@ impl StepDirParams {
             ("step_ratio_counts", self.step_ratio_counts),
             ("step_ratio_steps", self.step_ratio_steps),
         )?;
-        let longest = (MAX_TICKS as f64) / scale.tick_hz();
-        // The nearest power of two lies within √2 of it.
-        let smoothing = checked(
-            "step_smoothing_s",
-            self.step_smoothing_s,
-            0.0,
-            longest * core::f64::consts::SQRT_2,
-        )?;
-        let ticks = (smoothing * scale.tick_hz()).max(1.0);
+        let ticks = (self.step_smoothing_s * scale.tick_hz()).max(1.0);
         let bits = libm::round(libm::log2(ticks)) as u32;
         Ok(Config {
             ratio,

@@ -1,112 +1,249 @@
 //! What the axis may do, and when it must stop.
 //!
+//! ```text
+//!              enable             ready, loop holds,
+//!                                 brake opens
+//!  ┌──────────┐ ─────► ┌──────────┐ ─────► ┌───────┐ ◄────► ┌────────┐
+//!  │ Disabled │        │ Enabling │        │ Ready │ motion │ Moving │
+//!  └──────────┘ ◄───── └──────────┘        └───┬───┘        └───┬────┘
+//!    ▲   ▲    taken back                       │ enable taken   │
+//!    │   │                                     ▼ back, or fault ▼
+//!    │   │  stop over, brake closed,        ┌─────────────────────┐
+//!    │   └─ enable off ──────────────────── │      Stopping       │
+//!    │                                      └──────────┬──────────┘
+//!    │ clear_fault                    the same, with   │
+//!    │                                a fault latched  ▼
+//!    │                                           ┌─────────┐ ◄── any state: 0 V with enable kept
+//!    └────────────────────────────────────────── │  Fault  │     for a time, then off; or off at once
+//!                                                └─────────┘
+//! ```
+//!
 //! The supervisor is asked twice a tick: [`Supervisor::permit`] before the setpoint, from what the board
 //! reports, and [`Supervisor::review`] after the loop, from what the tick came to. What it says last holds for the
 //! output of that very tick.
+//!
+//! A fault is latched with its context by [`FirstFault`]; faults that come later are noted and do not take its
+//! place, but a stronger reaction acts whenever it comes. Fault is left by [`Supervisor::clear`] alone. The
+//! supervisor can ask the drive to be off; the removal of power is the matter of the hardware's
+//! emergency-stop chain.
 
+mod clear;
+pub mod config;
 pub mod fault;
+mod fault_set;
+mod io;
+mod latch;
+pub mod monitor;
+pub mod record;
+mod sequence;
+mod status;
+mod watch;
 
+pub use clear::ClearError;
+pub use config::{Config, SupervisorParams};
 pub use fault::{Fault, Reaction};
+pub use fault_set::FaultSet;
+pub use io::{Permit, Review, Situation, State};
+pub use record::{Context, FirstFault, Trip};
 
 use crate::hal::Lines;
-
-/// State of the axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum State {
-    /// The drive is off.
-    #[default]
-    Disabled = 0,
-    /// The drive is enabled, but not ready yet, or the brake not yet released.
-    Enabling = 1,
-    /// Under control, at rest.
-    Ready = 2,
-    /// Under control, in motion.
-    Moving = 3,
-    /// In a controlled stop, or between the brake and the end of enable.
-    Stopping = 4,
-    /// Stopped by a fault, until it is cleared.
-    Fault = 5,
-}
-
-/// What the axis may do in a tick, from the least to the most.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Permit {
-    /// Drive off.
-    #[default]
-    Off,
-    /// 0 V to an enabled drive, which brakes by its own loop; ours is open.
-    ZeroVolts,
-    /// The loop holds the axis where it stands.
-    Hold,
-    /// The loop follows a controlled stop, and holds from its end.
-    Stop,
-    /// The loop follows its source.
-    Follow,
-}
-
-/// What the supervisor knows before the setpoint of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation<'a> {
-    /// The axis is to be under control.
-    pub enable: bool,
-    /// Discrete inputs.
-    pub lines: &'a Lines,
-}
-
-/// What the supervisor knows after the loop of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Review {
-    /// What was permitted before.
-    pub permit: Permit,
-    /// A motion is commanded.
-    pub moving: bool,
-    /// What a source of setpoints cannot go on for.
-    pub trouble: Option<Fault>,
-}
+use latch::Latch;
+use sequence::{Cue, Phase, Sequence};
+use watch::Watch;
 
 /// The supervisor.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Supervisor {
-    state: State,
-    fault: Option<Fault>,
+    config: Config,
+    sequence: Sequence,
+    latch: Latch,
+    watch: Watch,
+    warnings: FaultSet,
+    /// Faults that others found between ticks.
+    reported: Option<Fault>,
+    store_corrupt: bool,
+    /// The loop was closed in the last tick.
+    in_loop: bool,
+    moving: bool,
+    /// Estimated velocity of the last tick, Q11.20 d/tick.
+    velocity: i32,
+    lines: Lines,
+    enable: bool,
+    refused: bool,
 }
 
 impl Supervisor {
     /// Disabled, without a fault.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(config: Config) -> Self {
+        Self {
+            config,
+            sequence: Sequence::default(),
+            latch: Latch::default(),
+            watch: Watch::default(),
+            warnings: FaultSet::default(),
+            reported: None,
+            store_corrupt: false,
+            in_loop: false,
+            moving: false,
+            velocity: 0,
+            lines: Lines::default(),
+            enable: false,
+            refused: false,
+        }
     }
 
-    /// Where it stands.
-    #[must_use]
-    pub const fn state(&self) -> State {
-        self.state
-    }
-
-    /// The fault that is latched.
-    #[must_use]
-    pub const fn fault(&self) -> Option<Fault> {
-        self.fault
+    /// Takes new limits and times; state and latched fault stay, and a time that runs goes on.
+    pub const fn reconfigure(&mut self, config: Config) {
+        self.config = config;
     }
 
     /// What may be done in this tick.
+    #[inline]
     pub fn permit(&mut self, situation: &Situation<'_>) -> Permit {
-        if situation.enable {
-            self.state = State::Ready;
+        let tolerance = self.config.readback_tolerance;
+        let Situation { readback, told, .. } = *situation;
+        let is_quiet = self.sequence.is_running()
+            && situation.enable
+            && (situation.illegal | situation.missed_ticks) == 0
+            && self.reported.is_none()
+            && *situation.lines == Lines::default()
+            && self.watch.readback.is_good(tolerance, readback, told);
+        if is_quiet {
             Permit::Follow
         } else {
-            self.state = State::Disabled;
-            Permit::Off
+            self.decide(situation)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn decide(&mut self, situation: &Situation<'_>) -> Permit {
+        self.lines = *situation.lines;
+        self.sequence.count_down();
+        let is_off = matches!(self.sequence.phase(), Phase::Disabled | Phase::Faulted);
+        let may_enable = situation.enable && !self.latch.is_set();
+        self.judge_lines(situation, !is_off || may_enable);
+        let cue = Cue {
+            enable: situation.enable,
+            ready: situation.lines.drive_ready,
+            moving: self.moving,
+            faulted: self.latch.is_set(),
+        };
+        if self.sequence.advance(&self.config.times, cue) {
+            let waited = i64::from(self.config.times.ready_timeout);
+            let trip = Trip::counted(Fault::DriveNotReady, waited, waited);
+            self.trip(trip, situation.tick);
+        }
+        let is_locked = situation.enable && self.sequence.phase() == Phase::Faulted;
+        self.refused = is_locked && (self.refused || !self.enable);
+        self.enable = situation.enable;
+        self.sequence.permit()
+    }
+
+    /// Faults that show before the setpoint; those of the board count only while the axis is enabled or about to be.
+    fn judge_lines(&mut self, situation: &Situation<'_>, is_active: bool) {
+        let Situation { tick, lines, .. } = *situation;
+        let too_many = self.watch.count(&self.config, situation);
+        let mismatch = self.watch.readback.check(
+            self.config.readback_tolerance,
+            situation.readback,
+            situation.told,
+        );
+        let reported = self.reported.take().map(Trip::line);
+        if !is_active {
+            return;
+        }
+        let was_ready = !matches!(
+            self.sequence.phase(),
+            Phase::Disabled | Phase::AwaitingReady | Phase::Faulted
+        );
+        let line = |active: bool, fault| active.then_some(Trip::line(fault));
+        let found = [
+            line(lines.emergency_stop, Fault::EmergencyStop),
+            line(lines.drive_fault, Fault::DriveFault),
+            line(lines.encoder_lost, Fault::SignalLoss),
+            line(self.store_corrupt, Fault::StoreCorrupt),
+            line(was_ready && !lines.drive_ready, Fault::DriveNotReady),
+            mismatch,
+            too_many,
+            reported,
+        ];
+        for trip in found.into_iter().flatten() {
+            self.trip(trip, tick);
         }
     }
 
     /// Looks at what the tick came to, and may take back what was permitted.
-    pub fn review(&mut self, review: &Review) -> Permit {
-        if review.moving && self.state == State::Ready {
-            self.state = State::Moving;
+    #[inline]
+    pub fn review(&mut self, review: &Review<'_>) -> Permit {
+        self.moving = review.moving;
+        self.velocity = review.estimate.velocity.to_bits();
+        self.in_loop = review.permit > Permit::ZeroVolts;
+        if !self.in_loop {
+            return self.review_off(review);
+        }
+        self.watch.look(&self.config, review);
+        if self.watch.is_silent() && review.trouble.is_none() {
+            return review.permit;
+        }
+        self.judge(review)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn judge(&mut self, review: &Review<'_>) -> Permit {
+        if let Some(fault) = review.trouble {
+            self.trip(Trip::line(fault), review.tick);
+        }
+        let (warnings, found) = self.watch.take();
+        self.warnings = self.warnings.union(warnings);
+        if let Some(trip) = found {
+            self.trip(trip, review.tick);
+        }
+        let permit = self.sequence.permit().min(review.permit);
+        self.in_loop = permit > Permit::ZeroVolts;
+        permit
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn review_off(&mut self, review: &Review<'_>) -> Permit {
+        self.moving = false;
+        self.watch.restart(&self.config, review.observation);
+        let is_off = review.permit == Permit::Off;
+        if let Some(trip) = self
+            .watch
+            .look_off(&self.config, review.observation, is_off)
+        {
+            if self.config.disabled.is_fault {
+                self.sequence.react(Reaction::Off, &self.config.times);
+                self.latch.set(trip, review.tick, State::Disabled);
+            } else {
+                self.warnings = self.warnings.with(trip.fault);
+            }
         }
         review.permit
+    }
+
+    /// The one way into a fault: latches it if it is the first, and reacts to it in any case.
+    #[cold]
+    #[inline(never)]
+    fn trip(&mut self, trip: Trip, tick: u32) {
+        let state = self.state();
+        self.latch.set(trip, tick, state);
+        self.sequence
+            .react(trip.fault.reaction(), &self.config.times);
+    }
+
+    /// True if the first fault was found in this tick, and its context is still to be noted.
+    #[must_use]
+    pub const fn is_context_due(&self) -> bool {
+        self.latch.is_due()
+    }
+
+    /// Notes the context of the first fault.
+    pub fn note_context(&mut self, context: &Context) {
+        self.latch.note(context);
     }
 }

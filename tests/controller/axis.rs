@@ -3,32 +3,31 @@
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::controller::Config;
 use leadscrew::controller::config::Gains;
-use leadscrew::edges::EdgeConfig;
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::paths::{self, Choice};
+use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
 use leadscrew::output;
-use leadscrew::params::AxisConfig;
+use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::QueueError;
-use leadscrew::uncertainty::EdgeErrors;
-use leadscrew::units::{AxisScale, Command, Position};
+use leadscrew::supervisor::SupervisorParams;
+use leadscrew::units::{Command, Position};
 
 use crate::signals::config as controller_config;
 
 /// A configuration with the estimator of that place in the list.
 pub fn config(estimator: usize, controller: Config, limit: f64, slew: f64) -> AxisConfig {
+    let estimator = EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator]);
+    let params = AxisParams {
+        // Captures here are such as no machine gives.
+        supervisor: SupervisorParams::widest(),
+        ..AxisParams::new(estimator.unwrap().unwrap())
+    };
     AxisConfig {
-        edges: EdgeConfig::new(1000.0, 84e6, &EdgeErrors::default()).unwrap(),
-        scale: AxisScale::new(1000.0, 1000.0).unwrap(),
-        estimators: paths::Config::single(
-            EstimatorConfig::by_name(EstimatorConfig::NAMES[estimator])
-                .unwrap()
-                .unwrap(),
-        ),
         controller,
         output: output::Config::new(limit, slew).unwrap(),
         limits: Limits::new(1000.0, 100.0, 3.0).unwrap(),
+        ..params.validate().unwrap()
     }
 }
 

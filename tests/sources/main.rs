@@ -5,3 +5,4 @@ mod ratio;
 #[path = "../support/seeded.rs"]
 mod seeded;
 mod step_dir;
+mod thread;

@@ -180,5 +180,5 @@ fn parameters_are_refused_by_name() {
     };
     assert!(refused(|p| p.step_ratio_counts = 0.0).starts_with("step_ratio_counts = 0 is out"));
     assert!(refused(|p| p.step_ratio_steps = 0.5).starts_with("step_ratio_steps = 0.5 is out"));
-    assert!(refused(|p| p.step_smoothing_s = 0.1).starts_with("step_smoothing_s = 0.1 is out"));
+    assert!(refused(|p| p.step_smoothing_s = 0.4).starts_with("step_smoothing_s = 0.4 is out"));
 }

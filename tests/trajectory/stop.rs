@@ -1,6 +1,8 @@
 //! A controlled stop and a hold, ordered by a permit.
 
+use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Reference;
+use leadscrew::params::AxisParams;
 use leadscrew::setpoint::Setpoint;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::sources::Sources;
@@ -13,7 +15,9 @@ fn limits() -> Limits {
 
 /// Sources in a move of 10 000 d, `ticks` after its start.
 fn moving(ticks: u32) -> (Sources, Setpoint) {
-    let mut sources = Sources::new(&limits());
+    let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
+    let config = AxisParams::new(estimator).validate().unwrap();
+    let mut sources = Sources::new(&limits(), &config.sources);
     sources.hold(Position::from_num(5));
     let profile = Profile::plan(Position::from_num(10_000), &limits()).unwrap();
     sources.trajectory.queue(&profile, 0, u32::MAX).unwrap();

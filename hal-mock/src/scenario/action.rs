@@ -32,6 +32,10 @@ pub enum Ask {
     Enable,
     /// Takes it out of control.
     Disable,
+    /// Clears the fault that is latched.
+    ClearFault,
+    /// Forgets the warnings.
+    ClearWarnings,
     /// Moves to a position.
     MoveTo {
         /// Where to, mm.
@@ -57,6 +61,39 @@ pub enum Trouble {
     CouplingSlip {
         /// Share that is lost, 0 to 1.
         share: f64,
+    },
+    /// The encoder's cable is cut: no edge comes, and its line receiver tells of it.
+    SignalLoss,
+    /// A pair of the encoder's wires is exchanged: it counts the other way.
+    EncoderReversed,
+    /// The command's wires are exchanged.
+    DriveReversed,
+    /// The drive reports a fault, and brakes to a stop.
+    DriveFault,
+    /// The drive is enabled in vain, or ceases to be ready.
+    DriveNotReady,
+    /// The converter puts out the same whatever it is told.
+    ConverterStuck {
+        /// What, as a share of full command.
+        output: f64,
+    },
+    /// The converter puts out more than it is told.
+    ConverterOffset {
+        /// By how much, as a share of full command.
+        offset: f64,
+    },
+    /// The emergency-stop chain is open; power stays on for the stop.
+    EmergencyStop,
+    /// The line receiver of the second encoder sees no signal.
+    MasterLost,
+    /// The encoder's index line is broken.
+    IndexLost,
+    /// The parameter store is found to be corrupt.
+    StoreCorrupt,
+    /// The axis misses ticks, once: the machine goes on under the last command.
+    MissedTicks {
+        /// How many.
+        ticks: u16,
     },
 }
 

@@ -7,7 +7,8 @@ use leadscrew::units::{RangeError, checked};
 
 use super::action::Timed;
 use super::error::ScenarioError;
-use super::sections::{Set, visit_axis, visit_machine};
+use super::plant::Plant;
+use super::sections::{Set, visit_axis, visit_plant};
 use super::tuning::{BANDWIDTH_RAD_PER_S, tuned_axis, tuned_estimator};
 use crate::machine::MachineParams;
 
@@ -63,7 +64,7 @@ pub struct Setting {
 pub struct Scenario<'s> {
     /// The machine to begin with.
     pub base: Base,
-    /// What differs from it.
+    /// What differs from it, and from a board at which all is well.
     pub machine: &'s [Setting],
     /// What differs from an axis that is tuned on the machine.
     pub axis: &'s [Setting],
@@ -98,14 +99,14 @@ impl Scenario<'_> {
         timeline: &[],
     };
 
-    /// The machine.
+    /// The machine and its board.
     #[must_use]
-    pub fn machine_params(&self) -> MachineParams {
-        let mut machine = self.base.params();
+    pub fn plant(&self) -> Plant {
+        let mut plant = Plant::from(self.base.params());
         for setting in self.machine {
-            visit_machine(&mut machine, setting.section, Set(setting));
+            visit_plant(&mut plant, setting.section, Set(setting));
         }
-        machine
+        plant
     }
 
     /// The axis, tuned on `machine` but for its settings.

@@ -5,6 +5,7 @@ use core::fmt;
 use leadscrew::params::ParamError;
 use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::supervisor::ClearError;
 
 /// Why a scenario cannot run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +16,8 @@ pub enum ScenarioError {
     Plan(PlanError),
     /// The axis did not take a move.
     Queue(QueueError),
+    /// The axis does not clear its fault.
+    Clear(ClearError),
     /// There is no estimator of the name.
     NoSuchEstimator,
 }
@@ -25,6 +28,7 @@ impl fmt::Display for ScenarioError {
             Self::Param(error) => error.fmt(f),
             Self::Plan(error) => error.fmt(f),
             Self::Queue(error) => error.fmt(f),
+            Self::Clear(error) => error.fmt(f),
             Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
         }
     }

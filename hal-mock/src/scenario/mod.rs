@@ -8,6 +8,7 @@ mod definition;
 mod error;
 mod move_and_back;
 mod operator;
+mod plant;
 mod runner;
 mod sections;
 mod tuning;
@@ -18,7 +19,10 @@ pub use definition::{Base, MAX_DURATION_S, Scenario, Setting, tick_at};
 pub use error::ScenarioError;
 pub use move_and_back::{MoveAndBack, Script, Setup, Simulation, TimedMove};
 pub use operator::Operator;
+pub use plant::Plant;
 pub use runner::{Happening, Runner};
-pub use sections::{AXIS_SECTIONS, MACHINE_SECTIONS, Visitor, visit_axis, visit_machine};
+pub use sections::{
+    BOARD_SECTIONS, MACHINE_SECTIONS, Visitor, visit_axis, visit_machine, visit_plant,
+};
 pub use tuning::{BANDWIDTH_RAD_PER_S, observer_params, tuned_axis, tuned_estimator};
 pub use world::World;

@@ -1,6 +1,6 @@
 //! The person at the panel: plans what is asked of the axis, outside the tick.
 
-use leadscrew::axis::Axis;
+use leadscrew::axis::{Axis, Outputs};
 use leadscrew::params::AxisParams;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::units::{AxisScale, Position, checked};
@@ -16,7 +16,7 @@ const MAX_TRAVEL_MM: f64 = 1e6;
 pub struct Operator {
     params: AxisParams,
     scale: AxisScale,
-    /// Where the axis stood when it was first seen, d.
+    /// Where the axis stood in its first tick, d.
     origin: Option<Position>,
     enable: bool,
 }
@@ -36,6 +36,11 @@ impl Operator {
         })
     }
 
+    /// Takes note of where the axis stands in its first tick.
+    pub fn look(&mut self, outputs: &Outputs) {
+        self.origin.get_or_insert(outputs.setpoint.position);
+    }
+
     /// The axis is to be under control.
     #[must_use]
     pub const fn enables(&self) -> bool {
@@ -50,11 +55,13 @@ impl Operator {
         match *ask {
             Ask::Enable => self.enable = true,
             Ask::Disable => self.enable = false,
+            Ask::ClearFault => axis.clear_fault().map_err(ScenarioError::Clear)?,
+            Ask::ClearWarnings => axis.supervisor_mut().clear_warnings(),
             Ask::MoveTo {
                 position_mm,
                 feed_mm_per_min,
             } => {
-                let origin = *self.origin.get_or_insert(axis.outputs().setpoint.position);
+                let origin = self.origin.unwrap_or_default();
                 let target = origin.saturating_add(self.distance("position_mm", position_mm)?);
                 let way = target.saturating_sub(axis.outputs().setpoint.position);
                 self.start(way, feed_mm_per_min, tick, axis)?;

@@ -8,7 +8,6 @@ use super::definition::{Scenario, tick_at};
 use super::error::ScenarioError;
 use super::operator::Operator;
 use super::world::World;
-use crate::machine::Machine;
 use crate::trace::TraceDigest;
 
 /// What became of an action.
@@ -45,12 +44,10 @@ impl<'s> Runner<'s> {
     /// # Errors
     /// A parameter out of range.
     pub fn new(scenario: &Scenario<'s>) -> Result<Self, ScenarioError> {
-        let machine = scenario.machine_params();
-        let params = scenario.axis_params(&machine)?;
-        let timer_hz = machine.encoder.encoder.timer_hz;
-        let machine = Machine::new(&machine, scenario.tick_hz, scenario.seed)?;
+        let plant = scenario.plant();
+        let params = scenario.axis_params(&plant.machine)?;
         Ok(Self {
-            world: World::new(machine, timer_hz),
+            world: World::new(&plant, scenario.tick_hz, scenario.seed)?,
             axis: Axis::new(params.validate()?),
             operator: Operator::new(&params)?,
             timeline: scenario.timeline,
@@ -80,9 +77,13 @@ impl<'s> Runner<'s> {
             self.next += 1;
         }
         self.world.step(&self.outputs);
+        self.axis
+            .supervisor_mut()
+            .set_store_corrupt(self.world.store_corrupt());
         let inputs = self.world.inputs(self.operator.enables());
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));
+        self.operator.look(&self.outputs);
         self.tick += 1;
         Some(&self.outputs)
     }

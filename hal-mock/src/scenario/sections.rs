@@ -1,9 +1,11 @@
-//! The parameter tables of a machine and of an axis, by the names that files give them.
+//! The parameter tables of a machine, its board and an axis, by the names that files give them.
 
 use leadscrew::parameter_table::ParameterTable;
-use leadscrew::params::AxisParams;
+use leadscrew::params::{AxisParams, SectionVisitor};
 
 use super::definition::{Setting, set};
+use super::plant::Plant;
+use crate::board::BoardParams;
 use crate::machine::MachineParams;
 
 /// Something to be done with a table, whichever it is.
@@ -45,13 +47,54 @@ sections! {
 }
 
 sections! {
-    /// Sections of an axis.
-    AXIS_SECTIONS,
-    /// Visits a section of an axis; `None` if there is none of that name.
-    visit_axis(AxisParams) {
-        motion: motion,
-        controller: controller,
-        output: output,
+    /// Sections of a machine's board.
+    BOARD_SECTIONS,
+    /// Visits a section of a board; `None` if there is none of that name.
+    visit_board(BoardParams) {
+        drive_lines: drive_lines,
+        switches: switches,
+        brake: brake,
+    }
+}
+
+/// Visits a section of a machine or of its board; `None` if there is none of that name.
+pub fn visit_plant<V: Visitor>(plant: &mut Plant, section: &str, visitor: V) -> Option<V::Output> {
+    if MACHINE_SECTIONS.contains(&section) {
+        visit_machine(&mut plant.machine, section, visitor)
+    } else {
+        visit_board(&mut plant.board, section, visitor)
+    }
+}
+
+/// Visits a section of an axis; `None` if there is none of that name.
+pub fn visit_axis<V: Visitor>(
+    params: &mut AxisParams,
+    section: &str,
+    visitor: V,
+) -> Option<V::Output> {
+    let mut found = Found {
+        section,
+        visitor: Some(visitor),
+        output: None,
+    };
+    params.visit_sections(&mut found);
+    found.output
+}
+
+/// Visits one section of all.
+struct Found<'a, V: Visitor> {
+    section: &'a str,
+    visitor: Option<V>,
+    output: Option<V::Output>,
+}
+
+impl<V: Visitor> SectionVisitor for Found<'_, V> {
+    fn section<T: ParameterTable>(&mut self, name: &'static str, table: &mut T) {
+        if name == self.section
+            && let Some(visitor) = self.visitor.take()
+        {
+            self.output = Some(visitor.visit(table));
+        }
     }
 }
 

@@ -1,86 +1,137 @@
-//! The machine with what goes wrong at it.
+//! The machine and its board with what goes wrong there.
 
 use leadscrew::axis::{Inputs, Outputs};
-use leadscrew::hal::{Capture, Encoder as _};
-use leadscrew::units::RangeError;
+use leadscrew::hal::Reference;
+use leadscrew::units::{Command, RangeError};
 
 use super::action::{EncoderTrouble, Interference, Trouble};
-use crate::faults::{Bursts, Fault, FaultyEncoder};
-use crate::machine::Machine;
+use super::plant::Plant;
+use crate::board::{self, Board, Converter, DriveHealth};
+use crate::faults::{Bursts, Fault};
 
-/// The machine, its troubles, and the levels of its inputs.
+/// Troubles that may last at one time, of those that are no fault of the encoder.
+const MOST_TROUBLES: usize = 8;
+
+/// The machine, its board and their troubles.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// The machine.
-    pub machine: Machine,
-    /// From the first trouble at the encoder on.
-    faulty: Option<FaultyEncoder>,
+    /// The board, with the machine.
+    pub board: Board,
     timer_hz: f64,
-    slips_until: Option<u32>,
+    /// Troubles that last, each with the first tick without it.
+    lasting: [Option<(Trouble, u32)>; MOST_TROUBLES],
+    /// The line of the index is broken.
+    index_lost: bool,
+    /// The parameter store is corrupt.
+    store_corrupt: bool,
     tick: u32,
 }
 
 impl World {
-    /// A machine without trouble.
-    #[must_use]
-    pub const fn new(machine: Machine, timer_hz: f64) -> Self {
-        Self {
-            machine,
-            faulty: None,
-            timer_hz,
-            slips_until: None,
+    /// A world without trouble, at rest, with the errors that `seed` draws.
+    ///
+    /// # Errors
+    /// A parameter out of range.
+    pub fn new(plant: &Plant, tick_hz: f64, seed: u64) -> Result<Self, RangeError> {
+        Ok(Self {
+            board: Board::new(&plant.board, &plant.machine, tick_hz, seed)?,
+            timer_hz: plant.machine.encoder.encoder.timer_hz,
+            lasting: [None; MOST_TROUBLES],
+            index_lost: false,
+            store_corrupt: false,
             tick: 0,
-        }
+        })
     }
 
     /// Lets trouble begin with the next step, for `ticks`.
     ///
     /// # Errors
-    /// A figure of it out of range.
+    /// A figure of it out of range, or too many troubles at a time.
     pub fn begin(&mut self, trouble: &Trouble, ticks: u32) -> Result<(), RangeError> {
-        let until = self.tick.saturating_add(ticks);
         match trouble {
             Trouble::Encoder(trouble) => {
                 let fault = trouble.at_clock(self.timer_hz);
-                match &mut self.faulty {
-                    Some(faulty) => faulty.inject(fault, ticks)?,
-                    None => {
-                        let capture = self.machine.capture();
-                        self.faulty = Some(FaultyEncoder::new(fault, 0..ticks, &capture)?);
-                    }
-                }
+                return self.board.break_encoder(fault, 0..ticks);
             }
-            Trouble::CouplingSlip { share } => {
-                self.machine.set_slip(*share);
-                self.slips_until = Some(until);
+            Trouble::MissedTicks { ticks } => {
+                self.board.miss(*ticks);
+                return Ok(());
             }
+            Trouble::SignalLoss => self.board.break_encoder(Fault::LineLoss, 0..ticks)?,
+            _ => {}
         }
+        let until = self.tick.saturating_add(ticks);
+        let Some(free) = self.lasting.iter_mut().find(|place| place.is_none()) else {
+            return Err(RangeError {
+                name: "troubles at one time",
+                value: MOST_TROUBLES as f64 + 1.0,
+                min: 0.0,
+                max: MOST_TROUBLES as f64,
+            });
+        };
+        *free = Some((*trouble, until));
+        self.settle();
         Ok(())
     }
 
     /// One tick: the machine moves as the axis wanted it in the last one.
     pub fn step(&mut self, outputs: &Outputs) {
-        if self.slips_until == Some(self.tick) {
-            self.machine.set_slip(0.0);
+        let is_over = |place: &Option<(Trouble, u32)>| matches!(place, Some((_, until)) if *until <= self.tick);
+        if self.lasting.iter().any(is_over) {
+            let now = self.tick;
+            for place in &mut self.lasting {
+                *place = place.filter(|(_, until)| *until > now);
+            }
+            self.settle();
         }
         self.tick = self.tick.saturating_add(1);
-        self.machine.step(outputs.command, outputs.enabled);
-        if let Some(faulty) = &mut self.faulty {
-            faulty.apply(&self.machine.capture());
-        }
+        self.board.step(outputs);
     }
 
     /// What the axis sees.
     #[must_use]
     pub fn inputs(&self, enable: bool) -> Inputs<'_> {
-        Inputs::of(self.capture(), enable)
+        let mut inputs = self.board.inputs(enable, Reference::default());
+        if self.index_lost {
+            inputs.capture.index = None;
+        }
+        inputs
     }
 
-    fn capture(&self) -> Capture<'_> {
-        match &self.faulty {
-            Some(faulty) => faulty.capture(),
-            None => self.machine.capture(),
+    /// The parameter store is corrupt.
+    #[must_use]
+    pub const fn store_corrupt(&self) -> bool {
+        self.store_corrupt
+    }
+
+    /// Makes of the board what the troubles that last make of it.
+    fn settle(&mut self) {
+        let mut wrong = board::Trouble::default();
+        let mut slip = 0.0;
+        (self.index_lost, self.store_corrupt) = (false, false);
+        for (trouble, _) in self.lasting.iter().flatten() {
+            match *trouble {
+                Trouble::CouplingSlip { share } => slip = share,
+                Trouble::SignalLoss => wrong.encoder_lost = true,
+                Trouble::EncoderReversed => wrong.encoder_reversed = true,
+                Trouble::DriveReversed => wrong.drive_reversed = true,
+                Trouble::DriveFault => wrong.drive = DriveHealth::Faulty,
+                Trouble::DriveNotReady => wrong.drive = DriveHealth::NeverReady,
+                Trouble::ConverterStuck { output } => {
+                    wrong.converter = Converter::Stuck(Command::saturating_from_num(output));
+                }
+                Trouble::ConverterOffset { offset } => {
+                    wrong.converter = Converter::OffBy(Command::saturating_from_num(offset));
+                }
+                Trouble::EmergencyStop => wrong.emergency_stop = true,
+                Trouble::MasterLost => wrong.master_lost = true,
+                Trouble::IndexLost => self.index_lost = true,
+                Trouble::StoreCorrupt => self.store_corrupt = true,
+                Trouble::Encoder(_) | Trouble::MissedTicks { .. } => {}
+            }
         }
+        self.board.trouble = wrong;
+        self.board.machine.set_slip(slip);
     }
 }
 

@@ -10,9 +10,9 @@ use leadscrew_hal_mock::scene::{Motion, Ripple};
 use serde::Serialize;
 
 use super::error::AccuracyError;
-use super::parallel;
 use super::rows::Row;
 use super::run::RunSpec;
+use crate::parallel;
 
 /// σ_a of a fit on the bound's scene.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -3,10 +3,11 @@
 use leadscrew::encoder_map::EncoderMap;
 use serde::Serialize;
 
+use super::SEEDS;
 use super::error::AccuracyError;
 use super::maps::Known;
-use super::{SEEDS, parallel};
 use crate::closed_loop::{LoopCase, LoopFigures};
+use crate::parallel;
 
 /// A move of a machine with the observer in the loop, the worst of all encoders.
 #[derive(Clone, Copy, Debug, Serialize)]

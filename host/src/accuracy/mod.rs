@@ -19,7 +19,6 @@ mod figures;
 mod in_loop;
 mod maps;
 mod methods;
-pub mod parallel;
 mod parts;
 mod residue;
 mod rows;

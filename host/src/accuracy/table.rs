@@ -4,6 +4,7 @@ use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew_hal_mock::scene::Ripple;
 
+use super::SEEDS;
 use super::bound::bound;
 use super::columns::COLUMNS;
 use super::error::AccuracyError;
@@ -14,7 +15,7 @@ use super::methods::{estimators, fit_of};
 use super::rows::{ROWS, Row};
 use super::run::{RunFigures, RunSpec};
 use super::variant::Variant;
-use super::{SEEDS, parallel};
+use crate::parallel;
 
 /// A run to be done.
 #[derive(Clone, Copy)]

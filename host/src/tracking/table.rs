@@ -13,8 +13,8 @@ use super::linuxcnc::tunings::{Reference, Tuning, tunings};
 use super::scene::{MOVE_MM, Scene};
 use super::trace::{MoveFigures, Trace};
 use super::tuned::tuned;
-use crate::accuracy::parallel;
 use crate::calibration::{Procedure, learn_simulated};
+use crate::parallel;
 
 /// Encoders that a figure is the worst of.
 pub const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];

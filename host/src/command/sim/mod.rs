@@ -1,14 +1,16 @@
 //! `leadscrew sim`: a move there and back on a simulated machine.
 
 mod report;
+mod scenario;
 
 use std::path::Path;
 
+use leadscrew::axis::Outputs;
 use leadscrew::params::ParamError;
 use leadscrew::units::{RangeError, checked};
 use leadscrew_hal_mock::drive::DriveParams;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError};
+use leadscrew_hal_mock::scenario::{Base, MoveAndBack, ScenarioError};
 
 use super::{
     MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
@@ -45,6 +47,9 @@ const FURTHER_COLUMNS: [&str; 10] = [
 /// # Errors
 /// Bad usage, a bad machine file, or a file that cannot be written.
 pub fn run(args: &SimArgs) -> Result<(), CommandError> {
+    if let Some(path) = &args.scenario {
+        return scenario::command(args, path);
+    }
     let (base, machine) = machine(&args.machine)?;
     if args.dump_machine {
         return print(&machine_file::dump(base, &machine));
@@ -82,7 +87,7 @@ fn machine(name: &str) -> Result<(&str, MachineParams), CommandError> {
     {
         return Ok(("16k20f3", machine_file::read(path)?));
     }
-    let known = machine_file::BASES.map(|(name, _)| name).join(", ");
+    let known = Base::ALL.map(Base::name).join(", ");
     Err(CommandError::Usage(format!(
         "--machine {name}: expected one of {known}, or a file FILE.toml"
     )))
@@ -138,6 +143,7 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             _ => return error.into(),
         },
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
+        ScenarioError::Clear(_) => return error.into(),
         ScenarioError::NoSuchEstimator => format!("--estimator {}", args.estimator),
     };
     CommandError::Usage(format!("{blamed}: {error}"))
@@ -153,25 +159,38 @@ fn untunable(args: &SimArgs, drive: &DriveParams, range: &RangeError) -> Command
 }
 
 fn write_csv(path: &Path, run: &Run) -> Result<(), CommandError> {
+    let rows = run.ticks.iter().enumerate().map(|(index, tick)| {
+        let outputs = &tick.outputs;
+        let truth = run.truth.before(index, 0.0).unwrap_or_default();
+        let further = vec![
+            outputs.setpoint.position.to_num(),
+            outputs.setpoint.velocity.to_num(),
+            outputs.setpoint.acceleration.to_num(),
+            outputs.following_error.to_num(),
+            outputs.command.to_num(),
+            truth.position,
+            truth.velocity,
+            truth.acceleration,
+            tick.carriage,
+            tick.tachogenerator,
+        ];
+        (*outputs, further)
+    });
+    write_csv_rows(path, run.tick_hz, &FURTHER_COLUMNS, rows)
+}
+
+/// Writes a row a tick: the shared columns, then `columns`.
+fn write_csv_rows(
+    path: &Path,
+    tick_hz: f64,
+    columns: &[&str],
+    rows: impl ExactSizeIterator<Item = (Outputs, Vec<f64>)>,
+) -> Result<(), CommandError> {
     write_file(path, |file| {
-        let mut report = CsvReport::new(file, run.tick_hz, &FURTHER_COLUMNS)?;
-        let mut progress = Progress::new("writing", run.ticks.len() as u64);
-        for (index, tick) in run.ticks.iter().enumerate() {
+        let mut report = CsvReport::new(file, tick_hz, columns)?;
+        let mut progress = Progress::new("writing", rows.len() as u64);
+        for (index, (outputs, further)) in rows.enumerate() {
             progress.step();
-            let outputs = &tick.outputs;
-            let truth = run.truth.before(index, 0.0).unwrap_or_default();
-            let further = [
-                outputs.setpoint.position.to_num(),
-                outputs.setpoint.velocity.to_num(),
-                outputs.setpoint.acceleration.to_num(),
-                outputs.following_error.to_num(),
-                outputs.command.to_num(),
-                truth.position,
-                truth.velocity,
-                truth.acceleration,
-                tick.carriage,
-                tick.tachogenerator,
-            ];
             report.row(index as u64, outputs.count, &outputs.estimate, &further)?;
         }
         report.finish()

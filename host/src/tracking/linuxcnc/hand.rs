@@ -8,7 +8,7 @@
 use super::PidParams;
 use super::bench::Bench;
 use super::margins::Margins;
-use crate::accuracy::parallel;
+use crate::parallel;
 use crate::tracking::error::TrackingError;
 use crate::tracking::scene::Scene;
 use crate::tracking::setpoints;

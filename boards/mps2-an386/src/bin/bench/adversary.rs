@@ -12,7 +12,7 @@ use static_cell::ConstStaticCell;
 
 use crate::samples::Samples;
 use crate::staged::ESTIMATORS;
-use crate::standard_move::{config, estimators};
+use crate::standard_move::{estimators, permissive};
 
 const TICKS: u32 = 4000;
 /// Edges of a tick at full speed, and the most that a ring holds.
@@ -51,7 +51,7 @@ impl Dice {
 pub fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     let table = SAMPLES.take();
     for (estimator, samples) in estimators()?.into_iter().zip(table.iter_mut()) {
-        let (config, script) = config(estimator)?;
+        let (config, script) = permissive(estimator)?;
         let mut axis = Axis::new(config);
         let mut dice = Dice(1);
         let mut times = [0_u32; EDGES];
@@ -95,7 +95,7 @@ fn inputs<'a>(dice: &mut Dice, times: &'a [u32; EDGES]) -> Inputs<'a> {
 /// no hardware decodes.
 fn edge(counter: &mut Counter) -> Result<(), ScenarioError> {
     let [edges, decoded] = EDGE.take();
-    let (config, _) = config(estimators()?[1])?;
+    let (config, _) = permissive(estimators()?[1])?;
     let times = [1_u32; EDGES];
     let (mut with, mut without) = (Axis::new(config), Axis::new(config));
     let mut decoder = Decoder::new(false, false);

@@ -5,7 +5,8 @@ use heapless::spsc::Queue;
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Encoder;
-use leadscrew::params::AxisConfig;
+use leadscrew::params::{AxisConfig, AxisParams};
+use leadscrew::supervisor::SupervisorParams;
 use leadscrew::telemetry::Record;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
 use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError, Script};
@@ -43,6 +44,24 @@ pub fn config(estimator: EstimatorConfig) -> Result<(AxisConfig, Script), Scenar
     let config = params.validate()?;
     let script = Script::new(&scenario, params.motion.counts_per_mm, &config)?;
     Ok((config, script))
+}
+
+/// The same for inputs that no machine gives: nothing trips the supervisor.
+pub fn permissive(estimator: EstimatorConfig) -> Result<(AxisConfig, Script), ScenarioError> {
+    let scenario = MoveAndBack::standard(TICK_HZ);
+    let (config, script) = config(estimator)?;
+    let params = AxisParams {
+        supervisor: SupervisorParams::widest(),
+        ..scenario.axis_params(&MachineParams::z_16k20f3(), estimator)?
+    };
+    let supervisor = params.validate()?.supervisor;
+    Ok((
+        AxisConfig {
+            supervisor,
+            ..config
+        },
+        script,
+    ))
 }
 
 /// All estimators with their default parameters.

@@ -1,0 +1,113 @@
+//! Runs of scenario files, what happened in them, and whether it was what the file expects.
+
+mod events;
+mod figures;
+mod judge;
+
+use leadscrew::axis::Outputs;
+use leadscrew::encoder_map::EncoderMap;
+use leadscrew::supervisor::FirstFault;
+use leadscrew_hal_mock::arc::State;
+use leadscrew_hal_mock::encoder::EncoderModel;
+use leadscrew_hal_mock::scenario::{Happening, Runner, Scenario, ScenarioError};
+use thiserror::Error;
+
+pub use self::events::{Event, What};
+pub use self::figures::{Figures, Stop};
+pub use self::judge::{Verdict, judge, short};
+
+use crate::calibration::{CalibrationError, Procedure, learn_simulated};
+use crate::progress::Progress;
+
+/// A tick of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// What the axis put out.
+    pub outputs: Outputs,
+    /// The screw, as it really moves: what the encoder says if nothing is wrong with it.
+    pub shaft: State,
+    /// Carriage, d.
+    pub carriage: f64,
+}
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// The ticks.
+    pub ticks: Vec<Tick>,
+    /// What became of each action, in the order of the timeline.
+    pub actions: Vec<Happening>,
+    /// Every fault that was latched, with its context.
+    pub faults: Vec<FirstFault>,
+    /// Digest of inputs and outputs of the axis.
+    pub digest: u64,
+    /// Control rate, Hz.
+    pub tick_hz: f64,
+    /// Encoder resolution, d/mm.
+    pub counts_per_mm: f64,
+}
+
+/// Why a scenario could not run.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A parameter is out of range.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The encoder's map could not be learned.
+    #[error("the encoder's map cannot be learned: {0}")]
+    Map(#[from] CalibrationError),
+    /// The encoder's map cannot be read back.
+    #[error("the encoder's map cannot be used: {0}")]
+    Image(#[from] leadscrew::encoder_map::error::MapError),
+}
+
+/// Runs a scenario.
+///
+/// # Errors
+/// [`RunError`]; what the axis refuses while it runs is no error.
+pub fn run(scenario: &Scenario<'_>) -> Result<Record, RunError> {
+    let image = scenario.mapped.then(|| learn(scenario)).transpose()?;
+    let map = image.as_deref().map(EncoderMap::from_bytes).transpose()?;
+    // The map has to live as long as what the runner borrows.
+    run_with(&Scenario { ..*scenario }, map)
+}
+
+fn learn(scenario: &Scenario<'_>) -> Result<Vec<u8>, CalibrationError> {
+    let model: EncoderModel = scenario.plant().machine.encoder;
+    let procedure = Procedure {
+        tick_hz: scenario.tick_hz,
+        ..Procedure::default()
+    };
+    learn_simulated(&model, scenario.seed, &procedure)
+}
+
+fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<Record, RunError> {
+    let mut runner = Runner::new(scenario)?;
+    runner.axis.set_map(map);
+    let mut progress = Progress::new("simulating", u64::from(runner.ticks()));
+    let mut ticks = Vec::with_capacity(runner.ticks() as usize);
+    let (mut actions, mut faults) = (Vec::new(), Vec::new());
+    while let Some(outputs) = runner.step(|happening| actions.push(happening)) {
+        let outputs = *outputs;
+        let latched = runner.axis.supervisor().first_fault();
+        match latched {
+            Some(first) if first.tick == outputs.tick => faults.push(*first),
+            _ => {}
+        }
+        let machine = &runner.world.board.machine;
+        ticks.push(Tick {
+            outputs,
+            shaft: machine.screw(),
+            carriage: machine.truth().carriage.position,
+        });
+        progress.step();
+    }
+    Ok(Record {
+        ticks,
+        actions,
+        faults,
+        digest: runner.digest(),
+        tick_hz: scenario.tick_hz,
+        counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
+    })
+}

@@ -1,0 +1,74 @@
+//! Runs of all files.
+
+use leadscrew::supervisor::Fault;
+use leadscrew_host::fault_names::{FAULTS, fault_name};
+use leadscrew_host::scenario_run::{Figures, judge, run};
+
+use super::{complaints, paths, read};
+
+#[test]
+fn every_scenario_comes_to_what_it_expects() {
+    let unmet = complaints(|path, file| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let scenario = file.scenario();
+        let record = match run(&scenario) {
+            Ok(record) => record,
+            Err(error) => return vec![format!("{name}: {error}")],
+        };
+        let verdicts = judge(&file.expect, &Figures::new(&record, scenario.timeline));
+        let unmet = verdicts.iter().filter(|verdict| !verdict.met);
+        unmet
+            .map(|verdict| {
+                format!(
+                    "{name}: {}: expected {}, found {}",
+                    verdict.name, verdict.expected, verdict.found
+                )
+            })
+            .collect()
+    });
+    assert!(unmet.is_empty(), "{}", unmet.join("\n"));
+}
+
+#[test]
+fn every_fault_has_a_scenario_that_trips_it() {
+    let tripped: Vec<Fault> = paths()
+        .iter()
+        .filter_map(|path| read(path).expect.fault)
+        .collect();
+    let missing: Vec<_> = Fault::ALL
+        .iter()
+        .filter(|fault| !tripped.contains(fault))
+        .map(|fault| fault_name(*fault))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn the_names_of_files_are_those_of_the_code() {
+    let kebab = |name: &str| {
+        let mut text = String::new();
+        for letter in name.chars() {
+            if letter.is_uppercase() && !text.is_empty() {
+                text.push('-');
+            }
+            text.extend(letter.to_lowercase());
+        }
+        text
+    };
+    assert_eq!(FAULTS.len(), Fault::ALL.len());
+    for (fault, name) in FAULTS {
+        assert_eq!(name, kebab(fault.name()));
+    }
+}
+
+#[test]
+fn every_scenario_says_what_it_shows() {
+    let silent = complaints(|path, file| {
+        let is_silent = file.description.is_empty();
+        is_silent
+            .then(|| path.display().to_string())
+            .into_iter()
+            .collect()
+    });
+    assert!(silent.is_empty(), "{silent:?}");
+}

@@ -1,0 +1,32 @@
+//! Overspeed.
+
+use super::super::fault::Fault;
+use super::super::record::Trip;
+
+/// Ticks running of a velocity above the limit: one burst of false edges is none.
+const TICKS: u32 = 3;
+
+/// The monitor.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overspeed {
+    ticks: u32,
+}
+
+impl Overspeed {
+    /// Judges an estimated velocity; both Q11.20 d/tick.
+    #[inline]
+    pub fn check(&mut self, limit: i32, velocity: i32) -> Option<Trip> {
+        if velocity.saturating_abs() <= limit {
+            self.ticks = 0;
+            return None;
+        }
+        self.exceed(limit, velocity)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exceed(&mut self, limit: i32, velocity: i32) -> Option<Trip> {
+        self.ticks = self.ticks.saturating_add(1);
+        (self.ticks >= TICKS).then(|| Trip::of_bits(Fault::Overspeed, velocity, limit, 20))
+    }
+}
