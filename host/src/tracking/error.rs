@@ -8,6 +8,7 @@ use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::calibration::CalibrationError;
+use crate::threads::ThreadError;
 
 /// Why there are no tables.
 #[derive(Debug, Error)]
@@ -45,6 +46,9 @@ pub enum TrackingError {
         /// Why.
         error: Box<TrackingError>,
     },
+    /// A thread was not cut.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
     /// A relay makes no limit cycle.
     #[error("the relay of {effort_d_per_s} d/s did not switch in {ticks} ticks: raise the effort")]
     NoLimitCycle {

@@ -128,6 +128,34 @@ pub struct CreepRow {
     pub rms: f64,
 }
 
+/// A pass of a thread.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ThreadPass {
+    /// Speed of the spindle, rpm.
+    pub rpm: f64,
+    /// Number of the pass at this speed, from 1.
+    pub pass: u32,
+    /// Mean phase, °.
+    pub phase_deg: f64,
+    /// Largest deviation from it, d.
+    pub instantaneous_d: f64,
+    /// Largest following error, d.
+    pub following_d: f64,
+    /// Pitch error over 100 mm, d.
+    pub pitch_error: Judged,
+}
+
+/// Threads on a machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Threads {
+    /// The machine.
+    pub machine: &'static str,
+    /// All passes at all speeds.
+    pub passes: Vec<ThreadPass>,
+    /// Largest difference of phase between any two of them, °.
+    pub phase_spread_deg: Judged,
+}
+
 /// All tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
@@ -141,4 +169,6 @@ pub struct Figures {
     pub backlash: Vec<MoveRow>,
     /// Slow feeds.
     pub creep: Vec<CreepRow>,
+    /// Threads of 2 mm.
+    pub threads: Vec<Threads>,
 }

@@ -1,4 +1,4 @@
-//! How well an axis follows: moves, rest and creep, beside LinuxCNC's `pid` on the same machines.
+//! How well an axis follows: moves, rest, creep and threads, beside LinuxCNC's `pid` on the same machines.
 //!
 //! ```text
 //! scene: machine, move ─► axis: ours ─────────┐
@@ -14,9 +14,12 @@ pub mod linuxcnc;
 pub mod scene;
 mod table;
 mod text;
+mod threads;
 pub mod trace;
 mod tuned;
 
 pub use self::error::TrackingError;
-pub use self::figures::{CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow};
+pub use self::figures::{
+    CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow, ThreadPass, Threads,
+};
 pub use self::table::{SEEDS, figures, setpoints};

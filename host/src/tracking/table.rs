@@ -11,6 +11,7 @@ use super::linuxcnc::bench::Bench;
 use super::linuxcnc::margins::Margins;
 use super::linuxcnc::tunings::{Reference, Tuning, tunings};
 use super::scene::{MOVE_MM, Scene};
+use super::threads::threads;
 use super::trace::{MoveFigures, Trace};
 use super::tuned::tuned;
 use crate::calibration::{Procedure, learn_simulated};
@@ -114,6 +115,7 @@ pub fn figures() -> Result<Figures, TrackingError> {
         peer: peer(&maps, &moves, &tunings)?,
         backlash: backlash(&maps)?,
         creep: creep(&maps)?,
+        threads: threads()?,
         moves,
     })
 }
