@@ -128,6 +128,25 @@ pub struct CreepRow {
     pub rms: f64,
 }
 
+/// The carriage by a laser: largest errors, d.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CarriageRow {
+    /// The machine.
+    pub machine: &'static str,
+    /// Carriage less place before compensation.
+    pub positioning_before: f64,
+    /// The same with the screw's table.
+    pub positioning: Judged,
+    /// Difference of a target reached from below and from above, before compensation.
+    pub reversal_before: f64,
+    /// The same with the table, which holds both directions.
+    pub reversal: Judged,
+    /// Its mean over all targets with the machine's backlash as a parameter, and no table.
+    pub mean_reversal_of_backlash: f64,
+    /// Largest setpoint less encoder at rest with the table.
+    pub standing: f64,
+}
+
 /// A pass of a thread.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ThreadPass {
@@ -169,6 +188,8 @@ pub struct Figures {
     pub backlash: Vec<MoveRow>,
     /// Slow feeds.
     pub creep: Vec<CreepRow>,
+    /// The carriage before and after compensation, with 3 d of backlash outside the loop.
+    pub carriage: Vec<CarriageRow>,
     /// Threads of 2 mm.
     pub threads: Vec<Threads>,
 }

@@ -1,4 +1,4 @@
-//! How well an axis follows: moves, rest, creep and threads, beside LinuxCNC's `pid` on the same machines.
+//! How well an axis follows: moves, rest, creep, carriage and threads, beside LinuxCNC's `pid` on the same machines.
 //!
 //! ```text
 //! scene: machine, move ─► axis: ours ─────────┐
@@ -8,6 +8,7 @@
 //! The following error is setpoint less the true position of the encoder's shaft, of the worst of five encoders.
 
 pub mod axis;
+mod carriage;
 mod error;
 mod figures;
 pub mod linuxcnc;

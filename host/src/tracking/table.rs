@@ -4,6 +4,7 @@ use leadscrew::encoder_map::EncoderMap;
 use leadscrew_hal_mock::encoder::EncoderModel;
 
 use super::axis::Rig;
+use super::carriage::carriage;
 use super::error::TrackingError;
 use super::figures::{CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow};
 use super::linuxcnc::PidParams;
@@ -115,6 +116,7 @@ pub fn figures() -> Result<Figures, TrackingError> {
         peer: peer(&maps, &moves, &tunings)?,
         backlash: backlash(&maps)?,
         creep: creep(&maps)?,
+        carriage: carriage()?,
         threads: threads()?,
         moves,
     })

@@ -18,6 +18,7 @@ fn the_json_has_a_row_for_every_machine_of_every_table() {
         ("peer", 25),
         ("backlash", 3),
         ("creep", 4),
+        ("carriage", 2),
         ("threads", 2),
     ];
     for (table, length) in lengths {
