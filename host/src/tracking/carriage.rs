@@ -5,7 +5,7 @@ use super::figures::{CarriageRow, Judged};
 use super::scene::Scene;
 use super::tuned::tuned;
 use crate::parallel;
-use crate::screw::{BeforeAndAfter, ScrewCase};
+use crate::screw::{BeforeAndAfter, ScrewCase, ScrewFailure};
 
 /// Largest positioning error over the travel, and largest reversal error, d.
 const POSITIONING: f64 = 2.0;
@@ -34,7 +34,10 @@ pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
                 points: POINTS,
                 settle_s: SETTLE_S,
             };
-            Ok(CarriageRow::new(name, &case.run()?))
+            Ok(match case.run() {
+                Ok(figures) => CarriageRow::new(name, &figures),
+                Err(failure) => CarriageRow::refused(name, &failure),
+            })
         },
     );
     done.into_iter().collect()
@@ -56,6 +59,21 @@ impl CarriageRow {
             reversal: Judged::new(after.reversal, REVERSAL),
             mean_reversal_of_backlash: backlash.mean_reversal,
             standing: after.standing,
+            refused: None,
+        }
+    }
+
+    /// No table: a servo that stands off by too much at each reading makes none that could be followed.
+    fn refused(machine: &'static str, failure: &ScrewFailure) -> Self {
+        Self {
+            machine,
+            positioning_before: f64::INFINITY,
+            positioning: Judged::new(f64::INFINITY, POSITIONING),
+            reversal_before: f64::INFINITY,
+            reversal: Judged::new(f64::INFINITY, REVERSAL),
+            mean_reversal_of_backlash: f64::INFINITY,
+            standing: f64::INFINITY,
+            refused: Some(failure.to_string()),
         }
     }
 }

@@ -8,7 +8,6 @@ use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::calibration::CalibrationError;
-use crate::screw::ScrewFailure;
 use crate::threads::ThreadError;
 
 /// Why there are no tables.
@@ -47,9 +46,6 @@ pub enum TrackingError {
         /// Why.
         error: Box<TrackingError>,
     },
-    /// A screw was not measured.
-    #[error(transparent)]
-    Screw(#[from] ScrewFailure),
     /// A thread was not cut.
     #[error(transparent)]
     Thread(#[from] ThreadError),

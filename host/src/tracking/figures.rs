@@ -128,8 +128,8 @@ pub struct CreepRow {
     pub rms: f64,
 }
 
-/// The carriage by a laser: largest errors, d.
-#[derive(Clone, Copy, Debug, Serialize)]
+/// The carriage by a laser: largest errors, d; where no table came about they are infinite.
+#[derive(Clone, Debug, Serialize)]
 pub struct CarriageRow {
     /// The machine.
     pub machine: &'static str,
@@ -145,6 +145,8 @@ pub struct CarriageRow {
     pub mean_reversal_of_backlash: f64,
     /// Largest setpoint less encoder at rest with the table.
     pub standing: f64,
+    /// Why no table came about, or the axis did not take it.
+    pub refused: Option<String>,
 }
 
 /// A pass of a thread.

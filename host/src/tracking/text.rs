@@ -229,7 +229,11 @@ fn carriage(rows: &[CarriageRow]) -> String {
             digits(row.standing),
         ]);
     }
-    lines(&table)
+    let refusals = rows.iter().filter_map(|row| {
+        let why = row.refused.as_ref()?;
+        Some(format!("{}: no table: {why}\n", row.machine))
+    });
+    lines(&table) + &refusals.collect::<String>()
 }
 
 fn threads(all: &[Threads]) -> String {
