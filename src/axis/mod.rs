@@ -80,7 +80,9 @@ impl<'m> Axis<'m> {
         let was_enabled = outputs.enabled;
         outputs.tick = tick;
         outputs.count = observation.count;
-        let command = was_enabled.then(|| self.output.command());
+        // What goes against friction does not move the drive that an observer counts on.
+        let command =
+            was_enabled.then(|| (self.output.command()).saturating_sub(self.controller.friction()));
         let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
@@ -343,6 +345,12 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// What of the last command goes against friction.
+    #[must_use]
+    pub const fn friction(&self) -> Command {
+        self.controller.friction()
     }
 
     /// The configuration in force.

@@ -2,8 +2,8 @@
 
 use super::error::TrackingError;
 use super::figures::{CarriageRow, Judged};
+use super::ours::tuned_on;
 use super::scene::Scene;
-use super::tuned::tuned;
 use crate::parallel;
 use crate::screw::{BeforeAndAfter, ScrewCase, ScrewFailure};
 
@@ -28,7 +28,7 @@ pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
         |(name, machine)| {
             let case = ScrewCase {
                 machine: *machine,
-                axis: tuned(machine)?,
+                axis: tuned_on(machine)?.0,
                 seed: SEED,
                 travel_mm: TRAVEL_MM,
                 points: POINTS,

@@ -3,6 +3,7 @@
 use leadscrew::encoder_map::error::MapError;
 use leadscrew::params::ParamError;
 use leadscrew::supervisor::Fault;
+use leadscrew::tuning::autotune::AutotuneError;
 use leadscrew::units::RangeError;
 use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
@@ -46,6 +47,9 @@ pub enum TrackingError {
         /// Why.
         error: Box<TrackingError>,
     },
+    /// No tuning can be offered.
+    #[error("{0}")]
+    Autotune(AutotuneError),
     /// A thread was not cut.
     #[error(transparent)]
     Thread(#[from] ThreadError),
@@ -57,4 +61,10 @@ pub enum TrackingError {
         /// How long it was waited for.
         ticks: u32,
     },
+}
+
+impl From<AutotuneError> for TrackingError {
+    fn from(error: AutotuneError) -> Self {
+        Self::Autotune(error)
+    }
 }

@@ -12,15 +12,16 @@ mod carriage;
 mod error;
 mod figures;
 pub mod linuxcnc;
+pub mod ours;
 pub mod scene;
 mod table;
 mod text;
 mod threads;
 pub mod trace;
-mod tuned;
 
 pub use self::error::TrackingError;
 pub use self::figures::{
-    CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow, ThreadPass, Threads,
+    CarriageRow, CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow, ThreadPass, Threads,
 };
+pub use self::ours::{Course, Rig, TrackingFigures, model_of, tuned_on};
 pub use self::table::{SEEDS, figures, setpoints};
