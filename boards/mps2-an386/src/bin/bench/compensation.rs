@@ -29,17 +29,22 @@ pub fn run(counter: &mut Counter) -> Result<(), RangeError> {
     let mut points = [ScrewPoint::default(); POINTS];
     for (at, point) in points.iter_mut().enumerate() {
         point.position = Position::from_num(at as i64 * SPACING);
-        point.error = [Position::from_num(at % 3), Position::from_num(at % 2)]
-            .map(|error| error.to_num());
+        point.error =
+            [Position::from_num(at % 3), Position::from_num(at % 2)].map(|error| error.to_num());
     }
     let table = ScrewTable::build(&points, MEMORY.take()).expect("the points are in order");
     let mut compensation = Compensation::new(config);
-    compensation.set_table(Some(table)).expect("it is flat enough");
+    compensation
+        .set_table(Some(table))
+        .expect("it is flat enough");
     compensation.set_origin(Some(Position::ZERO));
     let samples = SAMPLES.take();
     let travel = POINTS as i64 * SPACING;
     let there = (0..travel).step_by(SPEED as usize).map(|at| (at, SPEED));
-    let back = (0..travel).rev().step_by(SPEED as usize).map(|at| (at, -SPEED));
+    let back = (0..travel)
+        .rev()
+        .step_by(SPEED as usize)
+        .map(|at| (at, -SPEED));
     for (position, velocity) in there.chain(back) {
         let commanded = Setpoint {
             position: Position::from_num(position),
