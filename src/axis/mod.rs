@@ -2,10 +2,12 @@
 
 mod io;
 mod reconfigure;
+mod request;
 mod requests;
 
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
+pub use request::{Refused, Request};
 
 use crate::capture::{CaptureHealth, Observation, Unwrapper};
 use crate::compensation::{Compensation, ScrewTable, TableRefused};

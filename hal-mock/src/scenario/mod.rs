@@ -14,11 +14,11 @@ mod sections;
 mod tuning;
 mod world;
 
-pub use action::{Action, Ask, EncoderTrouble, Interference, Timed, Trouble};
+pub use action::{Action, Ask, EncoderTrouble, Interference, Outer, Timed, Trouble};
 pub use definition::{Base, MAX_DURATION_S, Scenario, Setting, tick_at};
 pub use error::ScenarioError;
 pub use move_and_back::{MoveAndBack, Script, Setup, Simulation, TimedMove};
-pub use operator::Operator;
+pub use operator::{Operator, Order, Seen};
 pub use plant::Plant;
 pub use runner::{Happening, Runner};
 pub use sections::{

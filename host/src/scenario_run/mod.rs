@@ -4,7 +4,7 @@ mod events;
 mod figures;
 mod judge;
 
-use leadscrew::axis::Outputs;
+use leadscrew::axis::{Axis, Outputs};
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::supervisor::FirstFault;
 use leadscrew_hal_mock::arc::State;
@@ -39,6 +39,8 @@ pub struct Record {
     pub actions: Vec<Happening>,
     /// Every fault that was latched, with its context.
     pub faults: Vec<FirstFault>,
+    /// Why homing failed and what was wrong with the spindle, for people.
+    pub notes: Vec<String>,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -106,8 +108,20 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
         ticks,
         actions,
         faults,
+        notes: notes(&runner.axis),
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
         counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
     })
+}
+
+/// What the axis has to say beside its faults.
+fn notes(axis: &Axis<'_>) -> Vec<String> {
+    let homing = axis.homing().failure().map(|failure| failure.to_string());
+    let distance = axis
+        .homing()
+        .index_distance()
+        .map(|distance| format!("home switch to index: {distance} d"));
+    let spindle = axis.spindle_trouble().map(|trouble| trouble.to_string());
+    [homing, distance, spindle].into_iter().flatten().collect()
 }
