@@ -51,6 +51,7 @@ pub mod encoder_map;
 pub mod estimator;
 pub mod hal;
 pub mod homing;
+pub mod identification;
 pub mod output;
 pub mod parameter_table;
 pub mod params;

@@ -8,6 +8,7 @@ pub mod closed_loop;
 pub mod command;
 pub mod error;
 pub mod fault_names;
+pub mod fault_page;
 pub mod figures;
 pub mod listening;
 pub mod machine_file;

@@ -1,10 +1,12 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
 
+mod experiment;
 mod io;
 mod reconfigure;
 mod request;
 mod requests;
 
+pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 pub use request::{Refused, Request};
@@ -18,6 +20,7 @@ use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
 use crate::homing::{HomeRefused, Homing, Sight};
+use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
@@ -39,6 +42,7 @@ pub struct Axis<'m> {
     compensation: Compensation<'m>,
     controller: Controller,
     output: Output,
+    experiment: Option<Experiment>,
     config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
@@ -60,6 +64,7 @@ impl<'m> Axis<'m> {
             compensation: Compensation::new(config.compensation),
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
+            experiment: None,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -104,7 +109,8 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        if !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
+        let open_loop = self.is_open_loop();
+        if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let reference = &inputs.reference;
@@ -121,10 +127,19 @@ impl<'m> Axis<'m> {
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
         let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
-        let demand = self
+        let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
+        if let Some(experiment) = &mut self.experiment {
+            demand.command = experiment.step(&Seen {
+                observation: &observation,
+                permit,
+                demand: demand.command,
+                in_force: self.output.command(),
+            });
+            outputs.moving |= experiment.ending().is_none();
+        }
 
         let permit = self.supervisor.review(&Review {
             permit,
@@ -138,7 +153,11 @@ impl<'m> Axis<'m> {
             following_error: outputs.following_error.to_bits(),
             told,
             active,
+            open_loop,
         });
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }

@@ -30,7 +30,7 @@ parameter_table! {
         /// Way allowed against the command
         against_mm: 0.3, "mm", 0.001..=1e6;
         /// Time allowed against the command
-        against_time_s: 0.05, "s", 0.0..=60.0;
+        against_time_s: 0.03, "s", 0.0..=60.0;
         /// Command above which the encoder has to move
         encoder_loss_level: 0.05, "of full command", 0.0..=1.0;
         /// Time for which it may stand

@@ -105,7 +105,7 @@ faults! {
     /// The axis moves against its command: wrong polarity of drive or encoder.
     MotionAgainstCommand = 2, Off {
         condition: "With |command| above `against_level`: motion against its sign over more than `against_mm` and for `against_time_s`, faster than when it began.",
-        bound: "50 ms and 0.3 mm, whichever is later; at most 50 ms at the drive's acceleration, 2.7 mm",
+        bound: "30 ms and 0.3 mm, whichever is later; 30 ms at the drive's acceleration of 2.1 m/s² are 1 mm",
         figure: "way against the command, d",
         cause: "Wires of the command or of an encoder pair exchanged; a load that turns the drive over.",
         remedy: "Exchange the command's wires or one pair of the encoder; prove the sign with `identify` before the loop is closed.",
@@ -169,7 +169,7 @@ faults! {
     /// The drive reports a fault.
     DriveFault = 10, Off {
         condition: "The drive's fault line is active while the axis is under control, or is to be.",
-        bound: "one tick",
+        bound: "the tick in which the line is active",
         figure: "1, limit 0",
         cause: "The drive has found one: see its display.",
         remedy: "Remove what the drive tells of, reset the drive, then clear.",
@@ -185,7 +185,7 @@ faults! {
     /// The converter does not put out what it was told.
     OutputMismatch = 12, Off {
         condition: "What the converter reads back differs from the last command by more than `readback_tolerance` in two ticks running. Not watched without a read-back.",
-        bound: "two ticks",
+        bound: "the second tick of the difference",
         figure: "read-back less command, of full command",
         cause: "The converter, its supply or its reference is defective; the output is shorted.",
         remedy: "Measure the output with the drive disconnected; replace the board.",
@@ -217,7 +217,7 @@ faults! {
     /// The output is at its limit for too long.
     OutputSaturated = 16, ControlledStop {
         condition: "The output at its limit, not its slew, for longer than `saturated_time_s` without a pause.",
-        bound: "1 s",
+        bound: "one second at the limit",
         figure: "ticks at the limit, limit of them",
         cause: "An overloaded or jammed axis, a drive slower than was set, a loop that is unstable.",
         remedy: "Check the full-command feed by `identify`; lower feed or acceleration; look for a mechanical cause.",
@@ -269,47 +269,5 @@ faults! {
         figure: "set by the source",
         cause: "Cable or coupling of the spindle's encoder; the spindle was stopped or reversed in the thread.",
         remedy: "Check the spindle's encoder; the pass is spoilt, the thread's phase is not.",
-    }
-}
-
-/// A set of faults.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FaultSet(u32);
-
-impl FaultSet {
-    /// With `fault` in it.
-    #[must_use]
-    pub const fn with(self, fault: Fault) -> Self {
-        Self(self.0 | 1_u32.wrapping_shl(fault as u32))
-    }
-
-    /// Of both.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// True if `fault` is in it.
-    #[must_use]
-    pub const fn contains(self, fault: Fault) -> bool {
-        self.0 & 1_u32.wrapping_shl(fault as u32) != 0
-    }
-
-    /// True if nothing is in it.
-    #[must_use]
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// How many are in it.
-    #[must_use]
-    pub const fn len(self) -> u32 {
-        self.0.count_ones()
-    }
-
-    /// Bit n is the fault of number n.
-    #[must_use]
-    pub const fn bits(self) -> u32 {
-        self.0
     }
 }

@@ -1,7 +1,8 @@
 //! The latch of the first fault.
 
 use super::State;
-use super::fault::{Fault, FaultSet};
+use super::fault::Fault;
+use super::fault_set::FaultSet;
 use super::record::{Context, FirstFault, Trip};
 
 /// The first fault, and what came after it.

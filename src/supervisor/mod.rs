@@ -30,107 +30,26 @@
 mod clear;
 pub mod config;
 pub mod fault;
+mod fault_set;
+mod io;
 mod latch;
 pub mod monitor;
 pub mod record;
 mod sequence;
+mod status;
 mod watch;
 
 pub use clear::ClearError;
 pub use config::{Config, SupervisorParams};
-pub use fault::{Fault, FaultSet, Reaction};
+pub use fault::{Fault, Reaction};
+pub use fault_set::FaultSet;
+pub use io::{Permit, Review, Situation, State};
 pub use record::{Context, FirstFault, Trip};
 
-use crate::capture::Observation;
-use crate::estimator::Estimate;
 use crate::hal::Lines;
-use crate::output::ActiveLimits;
-use crate::setpoint::Setpoint;
-use crate::units::Command;
 use latch::Latch;
 use sequence::{Cue, Phase, Sequence};
 use watch::Watch;
-
-/// State of the axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum State {
-    /// The drive is off.
-    #[default]
-    Disabled = 0,
-    /// The drive is enabled, but not ready yet, or the brake not yet released.
-    Enabling = 1,
-    /// Under control, at rest.
-    Ready = 2,
-    /// Under control, in motion.
-    Moving = 3,
-    /// In a controlled stop, or between the brake and the end of enable.
-    Stopping = 4,
-    /// Stopped by a fault, until it is cleared.
-    Fault = 5,
-}
-
-/// What the axis may do in a tick, from the least to the most.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Permit {
-    /// Drive off.
-    #[default]
-    Off,
-    /// 0 V to an enabled drive, which brakes by its own loop; ours is open.
-    ZeroVolts,
-    /// The loop holds the axis where it stands.
-    Hold,
-    /// The loop follows a controlled stop, and holds from its end.
-    Stop,
-    /// The loop follows its source.
-    Follow,
-}
-
-/// What the supervisor knows before the setpoint of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation<'a> {
-    /// The tick.
-    pub tick: u32,
-    /// The axis is to be under control.
-    pub enable: bool,
-    /// Discrete inputs.
-    pub lines: &'a Lines,
-    /// Illegal transitions of the encoder in this tick.
-    pub illegal: u16,
-    /// Ticks missed before this one.
-    pub missed_ticks: u16,
-    /// What the converter says it puts out.
-    pub readback: Option<Command>,
-    /// What it was told last.
-    pub told: Command,
-}
-
-/// What the supervisor knows after the loop of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Review<'a> {
-    /// What was permitted before.
-    pub permit: Permit,
-    /// The tick.
-    pub tick: u32,
-    /// A motion is commanded.
-    pub moving: bool,
-    /// What a source of setpoints cannot go on for.
-    pub trouble: Option<Fault>,
-    /// Discrete inputs.
-    pub lines: &'a Lines,
-    /// The count and the index.
-    pub observation: &'a Observation<'a>,
-    /// Where the axis is.
-    pub estimate: &'a Estimate,
-    /// Where it should be.
-    pub setpoint: &'a Setpoint,
-    /// Setpoint less position, Q15.16 d.
-    pub following_error: i32,
-    /// The command of the tick before.
-    pub told: Command,
-    /// The limits that held it back.
-    pub active: ActiveLimits,
-}
 
 /// The supervisor.
 #[derive(Clone, Debug)]
@@ -179,82 +98,6 @@ impl Supervisor {
         self.config = config;
     }
 
-    /// Where it stands.
-    #[must_use]
-    pub const fn state(&self) -> State {
-        self.sequence.state(self.moving, self.latch.is_set())
-    }
-
-    /// The fault that is latched.
-    #[must_use]
-    pub const fn fault(&self) -> Option<Fault> {
-        self.latch.fault()
-    }
-
-    /// The fault that is latched, with its context.
-    #[must_use]
-    pub const fn first_fault(&self) -> Option<&FirstFault> {
-        self.latch.first()
-    }
-
-    /// Warnings since the last [`Self::clear_warnings`].
-    #[must_use]
-    pub const fn warnings(&self) -> FaultSet {
-        self.warnings
-    }
-
-    /// Forgets the warnings.
-    pub fn clear_warnings(&mut self) {
-        self.warnings = FaultSet::default();
-    }
-
-    /// True while enable is asked for anew and refused: a fault is latched, and has to be cleared first.
-    #[must_use]
-    pub const fn is_refused(&self) -> bool {
-        self.refused
-    }
-
-    /// True if the loop was closed in the last tick.
-    #[must_use]
-    pub const fn is_in_loop(&self) -> bool {
-        self.in_loop
-    }
-
-    /// True while sources of setpoints are followed.
-    #[must_use]
-    pub const fn is_following(&self) -> bool {
-        self.sequence.is_running()
-    }
-
-    /// True if the brake is to be open.
-    #[must_use]
-    pub const fn brake_released(&self) -> bool {
-        self.sequence.brake_released()
-    }
-
-    /// Largest following error since the last reset, Q15.16 d.
-    #[must_use]
-    pub const fn following_error_peak(&self) -> i32 {
-        self.watch.following.peak
-    }
-
-    /// Begins a new peak.
-    pub const fn reset_following_error_peak(&mut self) {
-        self.watch.following.peak = 0;
-    }
-
-    /// Takes a fault that was found between ticks, by homing for instance; it acts in the next tick.
-    pub const fn report(&mut self, fault: Fault) {
-        if self.reported.is_none() {
-            self.reported = Some(fault);
-        }
-    }
-
-    /// Says whether the parameter store is corrupt; while it is, the axis is not enabled.
-    pub const fn set_store_corrupt(&mut self, corrupt: bool) {
-        self.store_corrupt = corrupt;
-    }
-
     /// What may be done in this tick.
     #[inline]
     pub fn permit(&mut self, situation: &Situation<'_>) -> Permit {
@@ -277,6 +120,7 @@ impl Supervisor {
     #[inline(never)]
     fn decide(&mut self, situation: &Situation<'_>) -> Permit {
         self.lines = *situation.lines;
+        self.sequence.count_down();
         let is_off = matches!(self.sequence.phase(), Phase::Disabled | Phase::Faulted);
         let may_enable = situation.enable && !self.latch.is_set();
         self.judge_lines(situation, !is_off || may_enable);
@@ -401,49 +245,5 @@ impl Supervisor {
     /// Notes the context of the first fault.
     pub fn note_context(&mut self, context: &Context) {
         self.latch.note(context);
-    }
-
-    /// Leaves Fault for Disabled.
-    ///
-    /// # Errors
-    /// [`ClearError`]: enable is still asked for, the stop is not over, the axis moves, or the cause persists.
-    pub fn clear(&mut self) -> Result<(), ClearError> {
-        if !self.latch.is_set() {
-            return Ok(());
-        }
-        if self.enable {
-            return Err(ClearError::EnableRequested);
-        }
-        if !matches!(self.sequence.phase(), Phase::Faulted | Phase::Disabled) {
-            return Err(ClearError::Stopping);
-        }
-        if self.velocity.saturating_abs() > self.config.still {
-            return Err(ClearError::Moving);
-        }
-        if let Some(fault) = self.persisting() {
-            return Err(ClearError::CausePersists(fault));
-        }
-        self.sequence.clear();
-        self.latch.clear();
-        self.watch.forget();
-        Ok(())
-    }
-
-    /// A fault whose cause is there whatever the axis does.
-    fn persisting(&self) -> Option<Fault> {
-        let Lines {
-            emergency_stop,
-            drive_fault,
-            encoder_lost,
-            ..
-        } = self.lines;
-        [
-            (emergency_stop, Fault::EmergencyStop),
-            (drive_fault, Fault::DriveFault),
-            (encoder_lost, Fault::SignalLoss),
-            (self.store_corrupt, Fault::StoreCorrupt),
-        ]
-        .into_iter()
-        .find_map(|(is_there, fault)| is_there.then_some(fault))
     }
 }

@@ -1,7 +1,8 @@
 //! What is kept of the first fault.
 
 use super::State;
-use super::fault::{Fault, FaultSet};
+use super::fault::Fault;
+use super::fault_set::FaultSet;
 use crate::controller::FollowingError;
 use crate::units::{Command, Position, Velocity};
 

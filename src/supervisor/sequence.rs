@@ -104,9 +104,13 @@ impl Sequence {
         )
     }
 
-    /// Goes on by a tick; true if the drive was awaited for too long.
-    pub fn advance(&mut self, times: &Times, cue: Cue) -> bool {
+    /// A tick of the phase has passed: before anything else in it.
+    pub const fn count_down(&mut self) {
         self.left = self.left.saturating_sub(1);
+    }
+
+    /// Goes on as far as it may; true if the drive was awaited for too long.
+    pub fn advance(&mut self, times: &Times, cue: Cue) -> bool {
         for _ in 0..WAYS_A_TICK {
             let before = self.phase;
             if self.go_on(times, cue) {

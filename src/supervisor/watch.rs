@@ -1,7 +1,8 @@
 //! All monitors together.
 
 use super::config::Config;
-use super::fault::{Fault, FaultSet};
+use super::fault::Fault;
+use super::fault_set::FaultSet;
 use super::monitor::following::{Following, Verdict};
 use super::monitor::{
     against, disabled, encoder_loss, index, leaky, readback, saturation, speed, travel,
@@ -38,9 +39,11 @@ impl Watch {
         let told = review.told.to_bits();
         let count = observation.count;
 
-        if let Some(trip) = self
-            .against
-            .check(&config.against, told, observation.delta, velocity)
+        if review.open_loop {
+            self.against = against::Against::default();
+        } else if let Some(trip) =
+            self.against
+                .check(&config.against, told, observation.delta, velocity)
         {
             self.find(trip);
         }

@@ -8,6 +8,7 @@ use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
     AxisConfig, AxisParams, ControllerParams, MotionParams, OutputParams, ParamError,
 };
+use leadscrew::supervisor::SupervisorParams;
 use leadscrew::units::RangeError;
 use proptest::prelude::*;
 
@@ -113,6 +114,7 @@ fn every_field_beyond_its_range_is_refused_by_name_value_and_range() {
     assert_fields_are_guarded::<ControllerParams>(|params, table| params.controller = table);
     assert_fields_are_guarded::<OutputParams>(|params, table| params.output = table);
     assert_fields_are_guarded::<MotionParams>(|params, table| params.motion = table);
+    assert_fields_are_guarded::<SupervisorParams>(|params, table| params.supervisor = table);
 }
 
 #[test]

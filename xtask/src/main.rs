@@ -65,6 +65,8 @@ fn golden_tables() -> Result<()> {
             "accuracy",
             "--test",
             "docs",
+            "--test",
+            "supervisor",
         ])
         .env("INSTA_UPDATE", "always")
         .run()?;

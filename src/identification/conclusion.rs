@@ -1,0 +1,200 @@
+//! From the records of the main experiments to figures with their uncertainty.
+
+use super::drive::{NO_LIMIT, Vector, converted, place};
+use super::fit::{Fit, Problem};
+use super::identified::{Figure, Identified, LargestAcceleration};
+use super::matrix::{part, set};
+use super::procedure::{Broke, broken_away_after};
+use super::recorder::Records;
+use super::seed;
+use crate::units::AxisScale;
+
+/// Dead time to begin with, s of a natural period.
+const FIRST_DEAD_TIME: f64 = 0.03;
+/// A limit of acceleration must explain that share of the squares that are left without it.
+const LIMIT_EXPLAINS: f64 = 0.05;
+/// Steps of command of common drives, of full command: what a ramp cannot tell apart.
+const COMMAND_STEP: f64 = 1e-4;
+/// Ticks by which the moment of breaking away is uncertain.
+const BREAK_TICKS: f64 = 2.0;
+
+/// All that is known at the end.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'r> {
+    pub records: Records<'r>,
+    pub decimation: u32,
+    /// Model of the probe, ticks.
+    pub probe: Vector,
+    pub broke: [Option<Broke>; 2],
+    pub break_command: Option<[f64; 2]>,
+}
+
+impl Evidence<'_> {
+    /// The model in records, and static friction as the aim that breaks away.
+    pub fn solve(&self) -> Option<(Fit, [f64; 2])> {
+        let mut start = converted(&self.probe, 1, self.decimation);
+        let period = core::f64::consts::TAU / libm::exp(part(&start, place::LN_OMEGA));
+        set(&mut start, place::DEAD_TIME, |_| FIRST_DEAD_TIME * period);
+        let fit = self.with_or_without_limit(&start)?;
+        let held = self.held(&fit.vector);
+        let fit = self.problem(&fit.vector, held).solve(&fit.vector)?;
+        Some((fit, held))
+    }
+
+    /// The better of a drive with a limit of acceleration and one without.
+    fn with_or_without_limit(&self, start: &Vector) -> Option<Fit> {
+        let held = self.held(start);
+        let problem = self.problem(start, held);
+        let without = problem.solve(start)?;
+        let mut best = without;
+        for share in [0.9, 0.6] {
+            let mut limited = *start;
+            set(&mut limited, place::MAX_ACCELERATION, |_| {
+                share * without.peak_acceleration
+            });
+            let Some(fit) = self.problem(&limited, held).solve(&limited) else {
+                continue;
+            };
+            let limit = part(&fit.vector, place::MAX_ACCELERATION);
+            let explains = fit.cost < best.cost.min((1.0 - LIMIT_EXPLAINS) * without.cost);
+            if explains && fit.peak_acceleration >= 0.999 * limit {
+                best = fit;
+            }
+        }
+        Some(best)
+    }
+
+    fn problem(&self, vector: &Vector, held: [f64; 2]) -> Problem<'_> {
+        let friction = part(vector, place::FRICTION);
+        let [forward, backward] = held;
+        let excess = forward.min(backward) - friction;
+        let gain = part(vector, place::GAIN);
+        let limited = part(vector, place::MAX_ACCELERATION) < NO_LIMIT;
+        let stribeck = excess > 0.1 * friction && excess > 5e-4 * gain;
+        Problem {
+            records: self.records,
+            free: seed::main_free(limited, stribeck),
+            held,
+            ln_stribeck: libm::log(friction.max(1e-3 * gain)),
+        }
+    }
+
+    /// Static friction of a drive with that vector (records) which breaks away when this one did.
+    fn held(&self, vector: &Vector) -> [f64; 2] {
+        let ticks = converted(vector, self.decimation, 1);
+        let rough = seed::held(
+            part(&ticks, place::GAIN),
+            part(&ticks, place::DRIFT),
+            self.break_command,
+        );
+        let [forward, backward] = rough;
+        let [broke_forward, broke_backward] = self.broke;
+        let records = f64::from(self.decimation);
+        let forward = exact(&ticks, forward, broke_forward, 1.0);
+        let backward = exact(&ticks, backward, broke_backward, -1.0);
+        [forward * records, backward * records]
+    }
+
+    /// The figures, in d, ticks and s.
+    pub fn identified(
+        &self,
+        fit: &Fit,
+        held: [f64; 2],
+        scale: AxisScale,
+        proof_level: f64,
+    ) -> Identified {
+        let n = f64::from(self.decimation);
+        let record_s = n / scale.tick_hz();
+        let at = |place| part(&fit.vector, place);
+        let sigma = |place| libm::sqrt(fit.covariance.at(place, place));
+        let figure = |place, factor: f64| Figure {
+            value: at(place) * factor,
+            sigma: sigma(place) * factor,
+        };
+        let relative = |place, value: f64| Figure {
+            value,
+            sigma: value * sigma(place),
+        };
+        let [gain, drift, friction] = [place::GAIN, place::DRIFT, place::FRICTION];
+        let sum = |weights: [f64; 3]| combined(fit, weights, n);
+        let slower = -libm::copysign(1.0, at(drift));
+        let full = sum([1.0, slower, -1.0]);
+        let offset = at(drift) / at(gain);
+        // Of the first order in both.
+        let offset_sigma = combined(fit, [-offset, 1.0, 0.0], 1.0).sigma / at(gain);
+        let speed = at(place::GAIN) / n;
+        let aim = |broke: Option<Broke>, held: f64| {
+            broke.map(|broke| Figure {
+                value: held / n,
+                sigma: speed * (BREAK_TICKS * broke.slope + COMMAND_STEP / 2.0),
+            })
+        };
+        let [forward, backward] = held;
+        let [broke_forward, broke_backward] = self.broke;
+        let limit = at(place::MAX_ACCELERATION);
+        let has_stribeck = sigma(place::LN_STRIBECK) > 0.0;
+        Identified {
+            scale,
+            gain: figure(gain, 1.0 / n),
+            full_speed: full,
+            offset: Figure {
+                value: offset,
+                sigma: offset_sigma,
+            },
+            friction: figure(friction, 1.0 / n),
+            loss: [sum([0.0, -1.0, 1.0]), sum([0.0, 1.0, 1.0])],
+            breakaway: [aim(broke_forward, forward), aim(broke_backward, backward)],
+            stribeck: has_stribeck
+                .then(|| relative(place::LN_STRIBECK, libm::exp(at(place::LN_STRIBECK)) / n)),
+            natural_period_s: relative(
+                place::LN_OMEGA,
+                core::f64::consts::TAU / libm::exp(at(place::LN_OMEGA)) * record_s,
+            ),
+            damping: relative(place::LN_DAMPING, libm::exp(at(place::LN_DAMPING))),
+            delay_s: figure(place::DELAY, record_s),
+            dead_time_s: figure(place::DEAD_TIME, record_s),
+            largest_acceleration: if limit < NO_LIMIT {
+                LargestAcceleration::Reached(figure(place::MAX_ACCELERATION, 1.0 / (n * n)))
+            } else {
+                LargestAcceleration::AtLeast(fit.peak_acceleration / (n * n))
+            },
+            residual_d: fit.rms_d,
+            proof_level,
+        }
+    }
+}
+
+/// A weighted sum of gain, drift and friction, a tick.
+fn combined(fit: &Fit, weights: [f64; 3], ticks: f64) -> Figure {
+    let mut value = 0.0;
+    let mut variance = 0.0;
+    for (i, a) in weights.into_iter().enumerate() {
+        value += a * part(&fit.vector, i);
+        for (j, b) in weights.into_iter().enumerate() {
+            variance += a * b * fit.covariance.at(i, j);
+        }
+    }
+    Figure {
+        value: value / ticks,
+        sigma: libm::sqrt(variance.max(0.0)) / ticks,
+    }
+}
+
+/// Static friction in one direction, d/tick of aim, with which the ramp breaks the drive away in as many ticks.
+fn exact(ticks: &Vector, rough: f64, broke: Option<Broke>, sign: f64) -> f64 {
+    let Some(broke) = broke else {
+        return rough;
+    };
+    let most = broke.ticks.saturating_mul(2).saturating_add(100);
+    let after = |held: f64| broken_away_after(ticks, [held; 2], sign * broke.slope, most);
+    let (mut low, mut high) = (0.0, 2.0 * rough + 0.1);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if after(middle) < broke.ticks {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,421 @@
+//! Least squares of a drive's motion under the recorded commands against the recorded motion.
+//!
+//! The output error is that of position: each chunk of the record begins at rest, where the model begins anew, and
+//! the place it begins at is free (the mean of its errors is taken out). Gauss–Newton with Levenberg's damping;
+//! derivatives come from drives that run beside the first one, each with one parameter moved.
+//!
+//! The covariance is the sandwich H⁻¹·(Σ s·sᵀ)·H⁻¹ over the scores s of whole clusters of records: errors of an encoder
+//! and of a drive are not white, and what repeats within a cluster counts once.
+
+use super::drive::{Drive, NO_LIMIT, PARAMETERS, Vector, place};
+use super::matrix::{Matrix, part, set};
+use super::recorder::Records;
+
+/// Zero commands that end a chunk, records.
+const REST: usize = 8;
+/// Most iterations.
+const ITERATIONS: usize = 40;
+
+/// Which parameters are free.
+pub type Free = [bool; PARAMETERS];
+
+/// A least-squares problem.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'r> {
+    /// What was measured.
+    pub records: Records<'r>,
+    /// Parameters that are looked for.
+    pub free: Free,
+    /// Static friction, as the aim that breaks away, forward and backward.
+    pub held: [f64; 2],
+    /// What ln of the Stribeck speed is thought to be, within a factor e; data seldom say much of it.
+    pub ln_stribeck: f64,
+}
+
+/// What a fit came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// The parameters.
+    pub vector: Vector,
+    /// Their covariance; zero for those that were not free.
+    pub covariance: Matrix,
+    /// Sum of squares, d².
+    pub cost: f64,
+    /// Rms of the errors, d.
+    pub rms_d: f64,
+    /// Largest acceleration of the model, d a record².
+    pub peak_acceleration: f64,
+}
+
+/// Sums over records.
+#[derive(Clone, Copy)]
+struct Sums {
+    count: f64,
+    error: f64,
+    slopes: Vector,
+    products: Matrix,
+    weighted: Vector,
+    square: f64,
+}
+
+impl Sums {
+    const ZERO: Self = Self {
+        count: 0.0,
+        error: 0.0,
+        slopes: [0.0; PARAMETERS],
+        products: Matrix::ZERO,
+        weighted: [0.0; PARAMETERS],
+        square: 0.0,
+    };
+
+    fn add(&mut self, error: f64, slopes: &Vector) {
+        self.count += 1.0;
+        self.error += error;
+        self.square += error * error;
+        self.products.add_product(slopes, slopes, 1.0);
+        for ((sum, weighted), slope) in self.slopes.iter_mut().zip(&mut self.weighted).zip(slopes) {
+            *sum += slope;
+            *weighted += slope * error;
+        }
+    }
+}
+
+impl Problem<'_> {
+    /// The best parameters from `start` on; none if the data do not determine them.
+    #[must_use]
+    pub fn solve(&self, start: &Vector) -> Option<Fit> {
+        let mut vector = bounded(start);
+        let mut damping = 1e-3;
+        let mut cost = self.cost(&vector);
+        for _ in 0..ITERATIONS {
+            let (normal, gradient) = self.normal(&vector, cost);
+            let before = cost;
+            let mut improved = false;
+            for _ in 0..8 {
+                let mut damped = normal;
+                for i in 0..PARAMETERS {
+                    damped.set(i, i, normal.at(i, i) * (1.0 + damping));
+                }
+                let step = damped.inverse()?.apply(&gradient);
+                let mut trial = vector;
+                for (value, step) in trial.iter_mut().zip(&step) {
+                    *value += step;
+                }
+                let trial = bounded(&trial);
+                let trial_cost = self.cost(&trial);
+                if trial_cost < cost {
+                    (vector, cost) = (trial, trial_cost);
+                    damping = (damping * 0.2).max(1e-9);
+                    improved = true;
+                    break;
+                }
+                damping *= 6.0;
+            }
+            if !improved || before - cost < 1e-7 * before {
+                break;
+            }
+        }
+        self.finish(vector, cost)
+    }
+
+    /// Sum of squared errors; the mean error of each chunk is free.
+    #[must_use]
+    pub fn cost(&self, vector: &Vector) -> f64 {
+        let mut cost = 0.0;
+        for chunk in self.chunks() {
+            let (mut count, mut sum, mut square) = (0.0, 0.0, 0.0);
+            self.run(chunk, &mut [self.drive(vector, chunk)], |error, _| {
+                count += 1.0;
+                sum += error;
+                square += error * error;
+            });
+            cost += square - sum * sum / f64::max(count, 1.0);
+        }
+        if cost.is_finite() { cost } else { f64::MAX }
+    }
+
+    /// Normal equations at a vector: H and the right-hand side.
+    fn normal(&self, vector: &Vector, cost: f64) -> (Matrix, Vector) {
+        let mut normal = Matrix::ZERO;
+        let mut gradient = [0.0; PARAMETERS];
+        for chunk in self.chunks() {
+            let sums = self.sums(vector, chunk);
+            for i in 0..PARAMETERS {
+                let mean = part(&sums.slopes, i) / sums.count.max(1.0);
+                set(&mut gradient, i, |g| {
+                    g + part(&sums.weighted, i) - mean * sums.error
+                });
+                for j in 0..PARAMETERS {
+                    let centred = sums.products.at(i, j) - mean * part(&sums.slopes, j);
+                    normal.set(i, j, normal.at(i, j) + centred);
+                }
+            }
+        }
+        let i = place::LN_STRIBECK;
+        if part_free(&self.free, i) {
+            let weight = self.prior_weight(cost);
+            normal.set(i, i, normal.at(i, i) + weight);
+            set(&mut gradient, i, |g| {
+                g + weight * (self.ln_stribeck - part(vector, i))
+            });
+        }
+        for i in 0..PARAMETERS {
+            if !part_free(&self.free, i) {
+                normal.set(i, i, 1.0);
+            }
+        }
+        (normal, gradient)
+    }
+
+    /// The prior counts as one good look at the Stribeck speed.
+    fn prior_weight(&self, cost: f64) -> f64 {
+        cost / (self.records.len() as f64).max(1.0)
+    }
+
+    /// Covariance and figures of the solution.
+    fn finish(&self, vector: Vector, cost: f64) -> Option<Fit> {
+        let (normal, _) = self.normal(&vector, cost);
+        let inverse = normal.inverse()?;
+        let free = self.free.iter().filter(|free| **free).count() as f64;
+        let mut wide = Clusters::default();
+        let mut narrow = Clusters::default();
+        let mut records = 0.0;
+        let mut peak = 0.0_f64;
+        let length = self.narrow_cluster(&vector);
+        for chunk in self.chunks() {
+            let sums = self.sums(&vector, chunk);
+            records += sums.count;
+            let means = sums.slopes.map(|sum| sum / sums.count.max(1.0));
+            let mean_error = sums.error / sums.count.max(1.0);
+            let mut drives = self.drives(&vector, chunk);
+            let mut index = 0_usize;
+            self.run(chunk, &mut drives, |error, drives| {
+                let slopes = self.slopes(&vector, drives);
+                let mut score = [0.0; PARAMETERS];
+                for (i, place) in score.iter_mut().enumerate() {
+                    *place = (part(&slopes, i) - part(&means, i)) * (error - mean_error);
+                }
+                wide.add(&score);
+                narrow.add(&score);
+                index = index.wrapping_add(1);
+                if index.is_multiple_of(length) {
+                    narrow.end();
+                }
+                if let Some(drive) = drives.first() {
+                    peak = peak.max(libm::fabs(drive.acceleration()));
+                }
+            });
+            wide.end();
+            narrow.end();
+        }
+        let sandwich = |clusters: &Clusters| {
+            let freedom = (clusters.count - free).max(2.0);
+            let covariance = inverse.times(&clusters.products).times(&inverse);
+            (covariance, clusters.count / freedom)
+        };
+        let (wide, narrow) = (sandwich(&wide), sandwich(&narrow));
+        let mut covariance = Matrix::ZERO;
+        for i in 0..PARAMETERS {
+            for j in 0..PARAMETERS {
+                let scale = |k: usize| {
+                    let (of_wide, of_narrow) =
+                        (wide.0.at(k, k) * wide.1, narrow.0.at(k, k) * narrow.1);
+                    let base = narrow.0.at(k, k).max(1e-300);
+                    libm::sqrt(of_wide.max(of_narrow) / base)
+                };
+                if part_free(&self.free, i) && part_free(&self.free, j) {
+                    covariance.set(i, j, narrow.0.at(i, j) * scale(i) * scale(j));
+                }
+            }
+        }
+        Some(Fit {
+            vector,
+            covariance,
+            cost,
+            rms_d: libm::sqrt(cost / f64::max(records, 1.0)),
+            peak_acceleration: peak,
+        })
+    }
+
+    /// Records of a narrow cluster: errors further apart than a period and a half have little in common.
+    fn narrow_cluster(&self, vector: &Vector) -> usize {
+        let period = core::f64::consts::TAU / libm::exp(part(vector, place::LN_OMEGA));
+        (1.5 * period).clamp(16.0, 1000.0) as usize
+    }
+
+    fn sums(&self, vector: &Vector, chunk: (usize, usize)) -> Sums {
+        let mut sums = Sums::ZERO;
+        let mut drives = self.drives(vector, chunk);
+        self.run(chunk, &mut drives, |error, drives| {
+            sums.add(error, &self.slopes(vector, drives));
+        });
+        sums
+    }
+
+    /// The drive of `vector`, and one for each parameter that is moved by its step.
+    fn drives(&self, vector: &Vector, chunk: (usize, usize)) -> [Drive; PARAMETERS + 1] {
+        let mut drives = [self.drive(vector, chunk); PARAMETERS + 1];
+        for (i, drive) in drives.iter_mut().skip(1).enumerate() {
+            if part_free(&self.free, i) {
+                let mut moved = *vector;
+                set(&mut moved, i, |value| value + step(vector, i));
+                *drive = self.drive(&moved, chunk);
+            }
+        }
+        drives
+    }
+
+    fn drive(&self, vector: &Vector, (start, _): (usize, usize)) -> Drive {
+        let before = (0..start).rev().map(|index| self.command(index as isize));
+        let last = before.take(4000).find(|command| *command != 0.0);
+        let direction = last.map_or(0.0, |command| libm::copysign(1.0, command));
+        Drive::new(vector, self.held).last_driven(direction)
+    }
+
+    /// Slopes of the travel.
+    fn slopes(&self, vector: &Vector, drives: &[Drive]) -> Vector {
+        let travel = drives.first().map_or(0.0, |drive| drive.travel);
+        let mut slopes = [0.0; PARAMETERS];
+        for (i, (place, drive)) in slopes.iter_mut().zip(drives.iter().skip(1)).enumerate() {
+            if part_free(&self.free, i) {
+                *place = (drive.travel - travel) / step(vector, i);
+            }
+        }
+        slopes
+    }
+
+    /// Runs drives through a chunk; `see` gets the first one's error after each record.
+    fn run(
+        &self,
+        (start, end): (usize, usize),
+        drives: &mut [Drive],
+        mut see: impl FnMut(f64, &[Drive]),
+    ) {
+        let mut travel = 0.0;
+        for index in start..end {
+            let Some(record) = self.records.get(index) else {
+                return;
+            };
+            travel += record.travel_d;
+            for drive in &mut *drives {
+                drive.step(|at| self.command(at), index as isize);
+            }
+            let model = drives.first().map_or(0.0, |drive| drive.travel);
+            see(travel - model, drives);
+        }
+    }
+
+    fn command(&self, index: isize) -> f64 {
+        self.records.command(index)
+    }
+
+    /// Stretches from one rest to the next.
+    fn chunks(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let mut from = 0;
+        core::iter::from_fn(move || {
+            let start = from;
+            if start >= self.records.len() {
+                return None;
+            }
+            let mut index = start;
+            let mut zeros = 0_usize;
+            let mut moved = false;
+            while index < self.records.len() {
+                let moves = self.command(index as isize) != 0.0;
+                if moves && moved && zeros >= REST {
+                    break;
+                }
+                zeros = if moves { 0 } else { zeros.wrapping_add(1) };
+                moved |= moves;
+                index = index.wrapping_add(1);
+            }
+            from = index;
+            Some((start, index))
+        })
+    }
+
+    /// Errors of a solution record by record, d: measured and modelled travel within its chunk.
+    pub fn trace(&self, vector: &Vector, mut see: impl FnMut(usize, f64, f64, f64)) {
+        for chunk in self.chunks() {
+            let mut index = chunk.0;
+            let mut last = 0.0;
+            self.run(chunk, &mut [self.drive(vector, chunk)], |error, drives| {
+                let drive = drives.first().copied().unwrap_or_default();
+                let travel = drive.travel + error;
+                see(index, travel - last, drive.velocity(), error);
+                last = travel;
+                index = index.wrapping_add(1);
+            });
+        }
+    }
+}
+
+/// Scores of clusters.
+struct Clusters {
+    products: Matrix,
+    score: Vector,
+    count: f64,
+    is_empty: bool,
+}
+
+impl Default for Clusters {
+    fn default() -> Self {
+        Self {
+            products: Matrix::ZERO,
+            score: [0.0; PARAMETERS],
+            count: 0.0,
+            is_empty: true,
+        }
+    }
+}
+
+impl Clusters {
+    fn add(&mut self, score: &Vector) {
+        self.is_empty = false;
+        for (sum, score) in self.score.iter_mut().zip(score) {
+            *sum += score;
+        }
+    }
+
+    fn end(&mut self) {
+        if !self.is_empty {
+            self.products.add_product(&self.score, &self.score, 1.0);
+            self.count += 1.0;
+        }
+        self.score = [0.0; PARAMETERS];
+        self.is_empty = true;
+    }
+}
+
+fn part_free(free: &Free, place: usize) -> bool {
+    free.get(place).copied().unwrap_or(false)
+}
+
+/// By how much a parameter is moved to see what follows.
+fn step(vector: &Vector, place: usize) -> f64 {
+    match place {
+        place::GAIN => 1e-4 * part(vector, place::GAIN),
+        place::DRIFT | place::FRICTION => 1e-5 * part(vector, place::GAIN),
+        place::LN_OMEGA | place::LN_DAMPING => 1e-4,
+        place::MAX_ACCELERATION => 1e-3 * part(vector, place),
+        _ => 0.02,
+    }
+}
+
+/// A vector within what a drive can be.
+fn bounded(vector: &Vector) -> Vector {
+    let mut bounded = *vector;
+    let limits = [
+        (place::GAIN, 1e-3, 1e6),
+        (place::LN_OMEGA, -7.0, 0.4),
+        (place::LN_DAMPING, -3.5, 2.0),
+        (place::DELAY, -0.9, 200.0),
+        (place::DEAD_TIME, 0.0, 200.0),
+        (place::MAX_ACCELERATION, 1e-6, NO_LIMIT),
+        (place::LN_STRIBECK, -8.0, 8.0),
+    ];
+    for (place, low, high) in limits {
+        set(&mut bounded, place, |value| value.clamp(low, high));
+    }
+    bounded
+}

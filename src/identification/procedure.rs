@@ -1,0 +1,405 @@
+//! The order of experiments, and what is concluded from each before the next.
+
+use core::fmt;
+
+use super::drive::{Drive, Vector, converted, place};
+use super::experiment::{Ending, Experiment};
+use super::fit::{Fit, Problem};
+use super::identified::Identified;
+use super::matrix::part;
+use super::plan::{IdentifyParams, Main, Plan};
+use super::program::Program;
+use super::recorder::{Recorder, Records};
+use super::refusal::Refusal;
+use super::{conclusion, seed};
+use crate::axis::Axis;
+use crate::units::AxisScale;
+
+/// Fewest records that there must be room for.
+pub const MIN_RECORDS: usize = 6000;
+/// Travel that shows that a ramp broke the axis away, d.
+const BROKE_AWAY_D: f64 = 3.0;
+/// Travel in a rest that shows that nothing holds the axis, d.
+const DRIFTS_D: f64 = 4.0;
+
+/// Which experiments run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Pulses that prove the sign.
+    Proof,
+    /// Ramps to what breaks the axis away.
+    Ramps,
+    /// Steps for a first model.
+    Probe,
+    /// Steps, reversals and chirps for the model; the number of the program.
+    Main(usize),
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Proof => f.write_str("proof of the sign"),
+            Self::Ramps => f.write_str("break-away ramps"),
+            Self::Probe => f.write_str("probing steps"),
+            Self::Main(number) => write!(f, "main experiments, part {}", number.wrapping_add(1)),
+        }
+    }
+}
+
+/// What comes next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Next {
+    /// An experiment for the axis.
+    Run(Program),
+    /// The end.
+    Done(Identified),
+}
+
+/// A ramp that broke the axis away.
+#[derive(Clone, Copy, Debug)]
+pub struct Broke {
+    /// Command a tick, of full command.
+    pub slope: f64,
+    /// Ticks from its start until the axis had moved.
+    pub ticks: u32,
+}
+
+/// Identification of a drive, experiment by experiment.
+#[derive(Debug)]
+pub struct Identification<'w> {
+    plan: Plan,
+    scale: AxisScale,
+    recorder: Recorder<'w>,
+    stage: Option<Stage>,
+    running: bool,
+    /// Count at which all of it began.
+    centre: i64,
+    /// Level of the proof.
+    level: f64,
+    drifts: bool,
+    broke: [Option<Broke>; 2],
+    probe_levels: [f64; 2],
+    probe: Option<Vector>,
+    main: Option<Main>,
+    fit: Option<(Fit, [f64; 2])>,
+}
+
+impl<'w> Identification<'w> {
+    /// Identification within `params` on an axis with `scale`, whose speed at full command is thought to be about
+    /// `full_velocity` d/tick; `memory` takes the records.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a parameter out of range, or memory for fewer than [`MIN_RECORDS`].
+    pub fn new(
+        params: &IdentifyParams,
+        scale: AxisScale,
+        full_velocity: f64,
+        memory: &'w mut [i32],
+    ) -> Result<Self, Refusal> {
+        if memory.len() < MIN_RECORDS {
+            return Err(Refusal::WorkMemory {
+                given: memory.len(),
+                needed: MIN_RECORDS,
+            });
+        }
+        Ok(Self {
+            plan: Plan::new(params, scale, full_velocity)?,
+            scale,
+            recorder: Recorder::new(memory),
+            stage: None,
+            running: false,
+            centre: 0,
+            level: 0.0,
+            drifts: false,
+            broke: [None; 2],
+            probe_levels: [0.0; 2],
+            probe: None,
+            main: None,
+            fit: None,
+        })
+    }
+
+    /// What runs; none before the first experiment.
+    #[must_use]
+    pub const fn stage(&self) -> Option<Stage> {
+        self.stage
+    }
+
+    /// Takes what a tick of the experiment saw, right after that tick.
+    pub fn feed(&mut self, experiment: &Experiment) {
+        if self.running {
+            self.recorder.feed(experiment);
+            self.running = experiment.ending().is_none();
+        }
+    }
+
+    /// After each tick of `axis`: takes its record and starts what comes next. The result ends it, and gives the axis
+    /// back to its loop.
+    ///
+    /// # Errors
+    /// [`Refusal`]. The loop then stays open at zero command: disable the axis before it is released.
+    pub fn tend(&mut self, axis: &mut Axis<'_>) -> Result<Option<Identified>, Refusal> {
+        let mut ending = None;
+        if let Some(experiment) = axis.experiment() {
+            self.feed(experiment);
+            ending = experiment.ending();
+        }
+        if self.running {
+            return Ok(None);
+        }
+        match self.next(axis.outputs().count, ending)? {
+            Next::Run(program) => {
+                axis.start_experiment(&program)?;
+                Ok(None)
+            }
+            Next::Done(identified) => {
+                axis.release_experiment();
+                Ok(Some(identified))
+            }
+        }
+    }
+
+    /// What comes after an experiment that ended so, with the axis at `count`. Takes its time: fits are made here.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn next(&mut self, count: i64, ending: Option<Ending>) -> Result<Next, Refusal> {
+        let offset = count.wrapping_sub(self.centre) as f64;
+        match (self.stage, ending) {
+            (None, _) => {
+                self.centre = count;
+                self.prove()
+            }
+            (Some(stage), Some(Ending::Complete)) => match stage {
+                Stage::Proof => self.proved(),
+                Stage::Ramps => self.ramped(offset),
+                Stage::Probe => self.probed(offset),
+                Stage::Main(number) => self.measured(number, offset),
+            },
+            (Some(Stage::Proof), Some(Ending::WindowLeft | Ending::TooFast)) => {
+                Err(Refusal::RunsAway { level: self.level })
+            }
+            (Some(stage), ending) => Err(Refusal::Ended {
+                stage,
+                ending: ending.unwrap_or(Ending::NotPermitted),
+            }),
+        }
+    }
+
+    fn run(&mut self, stage: Stage, program: Program, decimation: Option<u32>) -> Next {
+        match decimation {
+            Some(decimation) => self.recorder.clear(decimation),
+            None => self.recorder.pause(),
+        }
+        self.stage = Some(stage);
+        self.running = true;
+        Next::Run(program.about(self.centre))
+    }
+
+    /// The next pulses of the proof.
+    fn prove(&mut self) -> Result<Next, Refusal> {
+        let last = self.stage.map(|_| self.level);
+        let Some(level) = self.plan.next_level(last) else {
+            let [moved_d, _] = pulses(self.recorder.records());
+            return Err(Refusal::NoMotion {
+                level: self.level,
+                moved_d,
+            });
+        };
+        self.level = level;
+        let program = self.plan.proof(level);
+        Ok(self.run(Stage::Proof, program, Some(self.plan.first_decimation())))
+    }
+
+    /// Judges a pair of pulses.
+    fn proved(&mut self) -> Result<Next, Refusal> {
+        let [difference, drift] = pulses(self.recorder.records());
+        let threshold = self.plan.proof_threshold();
+        if difference <= -threshold {
+            return Err(Refusal::WrongPolarity {
+                level: self.level,
+                moved_d: -difference,
+            });
+        }
+        if difference < threshold {
+            return self.prove();
+        }
+        self.drifts = libm::fabs(drift) >= DRIFTS_D;
+        let program = self.plan.ramps((3.0 * self.level).min(0.5));
+        Ok(self.run(Stage::Ramps, program, Some(self.plan.first_decimation())))
+    }
+
+    /// Takes from the ramps what broke the axis away.
+    fn ramped(&mut self, offset: f64) -> Result<Next, Refusal> {
+        if !self.drifts {
+            let slope = (3.0 * self.level).min(0.5) / f64::from(self.plan.ramp_ticks());
+            let decimation = self.recorder.decimation();
+            let records = self.recorder.records();
+            self.broke = [1.0, -1.0].map(|sign| {
+                let ticks = broke_away(records, sign)?.wrapping_mul(decimation);
+                Some(Broke { slope, ticks })
+            });
+        }
+        let moving = self.break_command().map_or(self.level, |[a, b]| a.max(b));
+        let (program, levels) = self.plan.probe(moving, offset);
+        self.probe_levels = levels;
+        Ok(self.run(Stage::Probe, program, Some(self.plan.first_decimation())))
+    }
+
+    /// Commands at which the ramps moved the axis, forward and backward.
+    fn break_command(&self) -> Option<[f64; 2]> {
+        let [forward, backward] = self.broke;
+        let command = |broke: Broke| broke.slope * f64::from(broke.ticks);
+        Some([command(forward?), command(backward?)])
+    }
+
+    /// A first model, and what the window allows by it.
+    fn probed(&mut self, offset: f64) -> Result<Next, Refusal> {
+        let not_determined = Refusal::NotDetermined {
+            stage: Stage::Probe,
+        };
+        let decimation = self.recorder.decimation();
+        let record_s = f64::from(decimation) / self.plan.tick_hz;
+        let fit = seed::fit(
+            self.recorder.records(),
+            self.probe_levels,
+            self.break_command(),
+            record_s,
+        )
+        .ok_or(not_determined)?;
+        let probe = converted(&fit.vector, decimation, 1);
+        let gain = part(&probe, place::GAIN);
+        let loss = part(&probe, place::FRICTION) + libm::fabs(part(&probe, place::DRIFT));
+        let moving = self
+            .break_command()
+            .map_or(0.0, |[a, b]| gain * a.max(b))
+            .max(loss);
+        let main = self.plan.main(&probe, moving, self.recorder.capacity())?;
+        self.probe = Some(probe);
+        self.main = Some(main);
+        let program = self.plan.main_program(&main, 0, offset);
+        Ok(self.run(Stage::Main(0), program, Some(main.decimation)))
+    }
+
+    /// The next of the main experiments, or the conclusion.
+    fn measured(&mut self, number: usize, offset: f64) -> Result<Next, Refusal> {
+        let not_determined = Refusal::NotDetermined {
+            stage: Stage::Main(number),
+        };
+        let (Some(main), Some(probe)) = (self.main, self.probe) else {
+            return Err(not_determined);
+        };
+        let next = number.wrapping_add(1);
+        if next < Main::PROGRAMS {
+            let program = self.plan.main_program(&main, next, offset);
+            return Ok(self.run(Stage::Main(next), program, None));
+        }
+        let evidence = conclusion::Evidence {
+            records: self.recorder.records(),
+            decimation: main.decimation,
+            probe,
+            broke: self.broke,
+            break_command: self.break_command(),
+        };
+        let (fit, held) = evidence.solve().ok_or(not_determined)?;
+        self.fit = Some((fit, held));
+        let limit_d = 0.03 * self.plan.half_window_d;
+        if fit.rms_d > limit_d {
+            return Err(Refusal::DoesNotFit {
+                rms_d: fit.rms_d,
+                limit_d,
+            });
+        }
+        Ok(Next::Done(
+            evidence.identified(&fit, held, self.scale, self.level),
+        ))
+    }
+
+    /// Measured and modelled motion of the main experiments: number of the record, its measured and modelled velocity
+    /// in d/tick and the error of position in d. Nothing before the end.
+    pub fn trace(&self, mut see: impl FnMut(usize, f64, f64, f64)) {
+        let Some((fit, held)) = &self.fit else {
+            return;
+        };
+        let ticks = f64::from(self.recorder.decimation());
+        let problem = Problem {
+            records: self.recorder.records(),
+            free: [false; super::drive::PARAMETERS],
+            held: *held,
+            ln_stribeck: 0.0,
+        };
+        problem.trace(&fit.vector, |index, measured, modelled, error| {
+            see(index, measured / ticks, modelled / ticks, error);
+        });
+    }
+
+    /// The records of the last experiments.
+    #[must_use]
+    pub fn records(&self) -> Records<'_> {
+        self.recorder.records()
+    }
+
+    /// Ticks of a record.
+    #[must_use]
+    pub const fn ticks_of_record(&self) -> u32 {
+        self.recorder.decimation()
+    }
+}
+
+/// By how much a positive pulse moved the axis more than a negative one, and the drift of the rest before them, d.
+fn pulses(records: Records<'_>) -> [f64; 2] {
+    let mut sign = 0.0;
+    let (mut rest, mut up, mut down) = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0));
+    for record in records.iter() {
+        if record.command != 0.0 {
+            sign = libm::copysign(1.0, record.command);
+        }
+        let (travel, count) = if sign > 0.0 {
+            &mut up
+        } else if sign < 0.0 {
+            &mut down
+        } else {
+            &mut rest
+        };
+        *travel += record.travel_d;
+        *count += 1.0;
+    }
+    let drift = rest.0 / f64::max(rest.1, 1.0);
+    [up.0 - down.0 - drift * (up.1 - down.1), rest.0]
+}
+
+/// Records from the start of the ramp of that sign until it had broken the axis away.
+fn broke_away(records: Records<'_>, sign: f64) -> Option<u32> {
+    let mut begun = None;
+    let mut travel = 0.0;
+    for (index, record) in records.iter().enumerate() {
+        let driven = record.command * sign > 0.0;
+        match begun {
+            None if driven => begun = Some(index),
+            None => continue,
+            // Past the end of the ramp.
+            Some(_) if !driven => return None,
+            Some(_) => {}
+        }
+        travel += record.travel_d;
+        if libm::fabs(travel) >= BROKE_AWAY_D {
+            let count = index.wrapping_sub(begun.unwrap_or(index)).wrapping_add(1);
+            return u32::try_from(count).ok();
+        }
+    }
+    None
+}
+
+/// Ticks in which a ramp breaks that drive away, as [`broke_away`] sees it.
+pub fn broken_away_after(vector: &Vector, held: [f64; 2], slope: f64, most: u32) -> u32 {
+    let mut drive = Drive::new(vector, held);
+    // The first record that counts is the first one with a command.
+    let ramp = |tick: isize| slope * tick.saturating_add(1).max(0) as f64;
+    for tick in 0..most {
+        drive.step(ramp, tick as isize);
+        if libm::fabs(drive.travel) >= BROKE_AWAY_D {
+            return tick.wrapping_add(1);
+        }
+    }
+    most
+}
