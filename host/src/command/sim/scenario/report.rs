@@ -262,7 +262,9 @@ impl Report {
         self.stops
             .iter()
             .for_each(|stop| text.push_str(&stop.text()));
-        self.notes.iter().try_for_each(|note| writeln!(text, "{note}"))?;
+        self.notes
+            .iter()
+            .try_for_each(|note| writeln!(text, "{note}"))?;
         text.push('\n');
         for verdict in &self.expectations {
             let word = if verdict.met { "met    " } else { "NOT MET" };
