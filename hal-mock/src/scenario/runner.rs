@@ -1,6 +1,6 @@
 //! A run of a scenario, tick by tick.
 
-use leadscrew::axis::{Axis, Outputs};
+use leadscrew::axis::{Axis, Outputs, Request};
 use leadscrew::telemetry::Record;
 
 use super::action::{Action, Ask, Timed};
@@ -8,6 +8,7 @@ use super::definition::{Scenario, tick_at};
 use super::error::ScenarioError;
 use super::operator::{Operator, Order, Seen};
 use super::world::World;
+use crate::invariants::{Invariants, Violation};
 use crate::trace::TraceDigest;
 
 /// What became of an action.
@@ -37,6 +38,8 @@ pub struct Runner<'s> {
     ticks: u32,
     outputs: Outputs,
     digest: TraceDigest,
+    invariants: Invariants,
+    violation: Option<Violation>,
 }
 
 impl<'s> Runner<'s> {
@@ -60,6 +63,8 @@ impl<'s> Runner<'s> {
             ticks: scenario.ticks()?,
             outputs: Outputs::default(),
             digest: TraceDigest::new(),
+            invariants: Invariants::new(params.output.limit),
+            violation: None,
         })
     }
 
@@ -86,6 +91,8 @@ impl<'s> Runner<'s> {
         let inputs = self.world.inputs(self.enable);
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));
+        let checked = self.invariants.check(&self.axis);
+        self.violation = self.violation.or(checked.err());
         self.operator.look(&Seen::of(&self.axis));
         self.tick += 1;
         Some(&self.outputs)
@@ -114,6 +121,9 @@ impl<'s> Runner<'s> {
                     self.operator.withdraw(&order);
                     return Err(ScenarioError::Refused(refused));
                 }
+                if matches!(request, Request::ClearFault) {
+                    self.invariants.note_cleared();
+                }
             }
             Order::Nothing => {}
         }
@@ -124,6 +134,12 @@ impl<'s> Runner<'s> {
     #[must_use]
     pub const fn ticks(&self) -> u32 {
         self.ticks
+    }
+
+    /// The first rule that holds in every run and did not in this one.
+    #[must_use]
+    pub const fn violation(&self) -> Option<Violation> {
+        self.violation
     }
 
     /// Digest of the run so far.
