@@ -94,6 +94,7 @@ mod tests {
     use leadscrew::estimator::EstimatorConfig;
     use leadscrew::hal::Capture;
     use leadscrew::params::AxisParams;
+    use leadscrew::supervisor::SupervisorParams;
     use leadscrew::tuning::DriveModel;
 
     use super::*;
@@ -115,6 +116,8 @@ mod tests {
         let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
         let params = AxisParams {
             controller: drive.place_poles(35.0).unwrap(),
+            // It is pushed as no machine is.
+            supervisor: SupervisorParams::widest(),
             ..AxisParams::new(estimator)
         };
         Axis::new(params.validate().unwrap())

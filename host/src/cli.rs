@@ -41,6 +41,8 @@ pub enum Command {
     TuneFilter(TuneFilterArgs),
     /// Measures the estimators on the scenes of reference: the tables of accuracy
     Accuracy(AccuracyArgs),
+    /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
+    Tracking(TrackingArgs),
 }
 
 /// Arguments of `accuracy`.
@@ -49,6 +51,17 @@ pub struct AccuracyArgs {
     /// Print the report as JSON, alone, on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `tracking`.
+#[derive(Debug, Args)]
+pub struct TrackingArgs {
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Search the gains of the hand-tuned peer anew, print them and stop (a minute or two)
+    #[arg(long, conflicts_with = "json")]
+    pub tune_linuxcnc: bool,
 }
 
 /// Where results go.

@@ -27,5 +27,6 @@ pub mod statistics;
 pub mod tacho_watch;
 pub mod threads;
 pub mod toml_file;
+pub mod tracking;
 pub mod truth;
 mod whole_file;

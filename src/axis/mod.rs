@@ -2,6 +2,7 @@
 
 mod experiment;
 mod io;
+mod planned;
 mod reconfigure;
 mod request;
 mod requests;
@@ -24,9 +25,7 @@ use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::Setpoint;
-use crate::setpoint::profile::Profile;
-use crate::setpoint::sources::{Source, Sources};
-use crate::setpoint::trajectory::QueueError;
+use crate::setpoint::sources::Sources;
 use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
 use crate::units::{Command, Position};
 
@@ -179,6 +178,7 @@ impl<'m> Axis<'m> {
         if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
             self.homing.lose_origin();
             self.compensation.set_origin(None);
+            self.sources.set_travel(None);
         }
         outputs.reported = self.compensation.reported(position);
         outputs
@@ -265,6 +265,7 @@ impl<'m> Axis<'m> {
         }
         self.homing.start(self.sources.last(), self.outputs.count);
         self.compensation.set_origin(None);
+        self.sources.set_travel(None);
         Ok(())
     }
 
@@ -272,25 +273,6 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn homing(&self) -> &Homing {
         &self.homing
-    }
-
-    /// Queues a planned move to start at tick `start`, counted as in [`Outputs::tick`].
-    ///
-    /// # Errors
-    /// [`QueueError`]; the axis then goes on as it was.
-    pub fn queue(&mut self, profile: &Profile, start: u32) -> Result<(), QueueError> {
-        if !self.supervisor.is_following() {
-            return Err(QueueError::Disabled);
-        }
-        if self.homing.is_active() {
-            return Err(QueueError::Busy);
-        }
-        if self.sources.selected() != Source::Trajectory {
-            return Err(QueueError::OtherSource);
-        }
-        self.sources
-            .trajectory
-            .queue(profile, start, self.tick.wrapping_sub(1))
     }
 
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by

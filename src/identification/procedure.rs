@@ -81,7 +81,7 @@ pub struct Identification<'w> {
     probe_levels: [f64; 2],
     probe: Option<Vector>,
     main: Option<Main>,
-    fit: Option<(Fit, [f64; 2])>,
+    fit: Option<(Fit, Option<[f64; 2]>)>,
 }
 
 impl<'w> Identification<'w> {
@@ -193,7 +193,8 @@ impl<'w> Identification<'w> {
         }
         self.stage = Some(stage);
         self.running = true;
-        Next::Run(program.about(self.centre))
+        let aligned = program.aligned(self.recorder.decimation());
+        Next::Run(aligned.about(self.centre))
     }
 
     /// The next pulses of the proof.
@@ -391,8 +392,8 @@ fn broke_away(records: Records<'_>, sign: f64) -> Option<u32> {
 }
 
 /// Ticks in which a ramp breaks that drive away, as [`broke_away`] sees it.
-pub fn broken_away_after(vector: &Vector, held: [f64; 2], slope: f64, most: u32) -> u32 {
-    let mut drive = Drive::new(vector, held);
+pub fn broken_away_after(vector: &Vector, held: f64, slope: f64, most: u32) -> u32 {
+    let mut drive = Drive::new(vector, Some([held; 2]));
     // The first record that counts is the first one with a command.
     let ramp = |tick: isize| slope * tick.saturating_add(1).max(0) as f64;
     for tick in 0..most {

@@ -11,12 +11,14 @@ use super::analog::Analog;
 use super::follower::{Config as FollowerConfig, Follower};
 use super::gearing::{Gear, Gearing};
 use super::master::Master;
+use super::plan::Plan;
 use super::profile::Limits;
 use super::step_dir::StepDir;
 use super::thread::{
     SpindleTrouble, Thread, ThreadFigures, ThreadOrder, ThreadPhase, ThreadRefusal,
 };
-use super::trajectory::Trajectory;
+use super::trajectory::{QueueError, Trajectory};
+use super::travel::TravelLimits;
 use crate::hal::{Capture, Reference};
 use crate::supervisor::{Fault, Permit};
 use crate::units::{Position, Velocity};
@@ -54,6 +56,7 @@ pub struct Sources {
     /// A stop runs, or the axis stands after one; no source is followed until it stands and may.
     stopping: bool,
     trouble: Option<Fault>,
+    travel: Option<TravelLimits>,
     last: Setpoint,
 }
 
@@ -74,6 +77,7 @@ impl Sources {
             stop: Follower::new(FollowerConfig::new(limits)),
             stopping: false,
             trouble: None,
+            travel: None,
             last: Setpoint::default(),
         }
     }
@@ -94,6 +98,35 @@ impl Sources {
         }
         self.master.reconfigure(config.master);
         (self.config, self.limits) = (*config, *limits);
+    }
+
+    /// Takes soft limits of travel, or does without.
+    pub const fn set_travel(&mut self, travel: Option<TravelLimits>) {
+        self.travel = travel;
+    }
+
+    /// The soft limits of travel in force.
+    #[must_use]
+    pub const fn travel(&self) -> Option<TravelLimits> {
+        self.travel
+    }
+
+    /// Queues a plan; see [`Trajectory::queue`].
+    ///
+    /// # Errors
+    /// [`QueueError`]; what runs goes on.
+    pub fn queue(&mut self, plan: &Plan, start: u32, now: u32) -> Result<(), QueueError> {
+        if self.selected != Source::Trajectory {
+            return Err(QueueError::OtherSource);
+        }
+        if self.stopping {
+            return Err(QueueError::Stopping);
+        }
+        let end = self.trajectory.end_of(plan);
+        if self.travel.is_some_and(|travel| !travel.contains(end)) {
+            return Err(QueueError::BeyondTravel);
+        }
+        self.trajectory.queue(plan, start, now)
     }
 
     /// Ends all motion and stands at `position`: for an axis that is not under control.
@@ -304,9 +337,14 @@ impl Sources {
             }
         };
         if is_lost {
-            Err(Fault::SetpointLost)
-        } else {
-            Ok(setpoint)
+            return Err(Fault::SetpointLost);
+        }
+        match &self.travel {
+            // A plan was refused if it ends beyond.
+            Some(travel) if self.selected != Source::Trajectory => {
+                travel.guard(self.stop.config(), setpoint)
+            }
+            _ => Ok(setpoint),
         }
     }
 

@@ -8,6 +8,7 @@ use core::fmt;
 
 use super::Setpoint;
 use super::follower::Config;
+use crate::supervisor::Fault;
 use crate::units::Position;
 
 /// The stretch in which setpoints may lie.
@@ -67,6 +68,20 @@ impl TravelLimits {
     #[must_use]
     pub fn contains(&self, position: Position) -> bool {
         (self.low..=self.high).contains(&position)
+    }
+
+    /// Passes on a setpoint that no plan made, or refuses it where it would lead beyond the limits: a stop from the
+    /// setpoint before it then ends within.
+    ///
+    /// # Errors
+    /// [`Fault::SoftLimit`]
+    #[inline]
+    pub fn guard(&self, config: &Config, next: Setpoint) -> Result<Setpoint, Fault> {
+        if self.admits(config, &next) {
+            Ok(next)
+        } else {
+            Err(Fault::SoftLimit)
+        }
     }
 
     /// True if a stop within `config` that begins after `next` ends within the limits, or if `next` leads back to

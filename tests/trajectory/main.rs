@@ -4,9 +4,11 @@ mod evaluation;
 mod follower;
 mod moves;
 mod oracle;
+mod planner;
 mod plans;
 mod queue;
 mod refusals;
 #[path = "../support/seeded.rs"]
 mod seeded;
 mod stop;
+mod travel;

@@ -9,6 +9,7 @@ pub mod replay;
 pub mod sim;
 pub mod sim_encoder;
 mod span;
+pub mod tracking;
 pub mod tune_filter;
 
 use std::io::{BufWriter, Write};
