@@ -8,6 +8,7 @@ use crate::setpoint::plan::Plan;
 use crate::setpoint::sources::{GearError, SelectError, Source};
 use crate::setpoint::thread::{ThreadOrder, ThreadRefusal};
 use crate::setpoint::trajectory::QueueError;
+use crate::setpoint::travel::TravelLimits;
 use crate::supervisor::ClearError;
 
 /// A request.
@@ -24,6 +25,8 @@ pub enum Request {
         /// Tick of its start.
         start: u32,
     },
+    /// [`Axis::set_travel`].
+    Travel(Option<TravelLimits>),
     /// [`Axis::home`].
     Home,
     /// [`Axis::select`].
@@ -78,6 +81,10 @@ impl Axis<'_> {
     pub fn take(&mut self, request: &Request) -> Result<(), Refused> {
         match request {
             Request::Queue { plan, start } => self.queue(plan, *start).map_err(Refused::Queue),
+            Request::Travel(travel) => {
+                self.set_travel(*travel);
+                Ok(())
+            }
             Request::Home => self.home().map_err(Refused::Home),
             Request::Select(source) => self.select(*source).map_err(Refused::Select),
             Request::Engage(engaged) => self.engage_gear(*engaged).map_err(Refused::Gear),

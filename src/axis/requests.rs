@@ -1,7 +1,6 @@
 //! Requests about sources of setpoints, between two ticks.
 
 use super::Axis;
-use crate::setpoint::Setpoint;
 use crate::setpoint::gearing::Gear;
 use crate::setpoint::master::Master;
 use crate::setpoint::sources::{GearError, SelectError, Source};
@@ -17,12 +16,6 @@ impl Axis<'_> {
     /// [`SelectError`] while the axis moves or a gear is engaged; what is followed stays.
     pub fn select(&mut self, source: Source) -> Result<(), SelectError> {
         self.sources.select(source)
-    }
-
-    /// The setpoint of the last tick before compensation: a planner begins at its position.
-    #[must_use]
-    pub const fn commanded(&self) -> &Setpoint {
-        self.sources.last()
     }
 
     /// The source that is followed. One that was lost has given way to planned moves.

@@ -72,6 +72,13 @@ pub enum Ask {
     },
     /// Stops, and forgets the target.
     Stop,
+    /// Sets soft limits of travel.
+    SetTravel {
+        /// The low one, mm.
+        low_mm: f64,
+        /// The high one, mm.
+        high_mm: f64,
+    },
     /// Looks for the home switch and the index.
     Home,
     /// Follows another source of setpoints.

@@ -7,6 +7,7 @@ use leadscrew::params::ParamError;
 use leadscrew::setpoint::planner::PlannerError;
 use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
+use leadscrew::setpoint::travel::TravelError;
 
 /// Why a scenario cannot run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,8 @@ pub enum ScenarioError {
     Queue(QueueError),
     /// The planner does not plan it.
     Planner(PlannerError),
+    /// There are no such limits of travel.
+    Travel(TravelError),
     /// The axis does not do it.
     Refused(Refused),
     /// There is no estimator of the name.
@@ -32,6 +35,7 @@ impl fmt::Display for ScenarioError {
             Self::Plan(error) => error.fmt(f),
             Self::Queue(error) => error.fmt(f),
             Self::Planner(error) => error.fmt(f),
+            Self::Travel(error) => error.fmt(f),
             Self::Refused(error) => error.fmt(f),
             Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
         }

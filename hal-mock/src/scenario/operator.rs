@@ -5,7 +5,9 @@ use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::planner::{Planner, Timed};
 use leadscrew::setpoint::sources::Source;
 use leadscrew::setpoint::thread::ThreadPhase;
+use leadscrew::setpoint::travel::TravelLimits;
 use leadscrew::supervisor::State;
+use leadscrew::telemetry::Record;
 use leadscrew::units::{AxisScale, Position, Velocity, checked};
 
 use super::action::Ask;
@@ -26,6 +28,17 @@ pub struct Seen {
 }
 
 impl Seen {
+    /// What a record tells, of an axis that only plans move and that is not homed.
+    #[must_use]
+    pub fn in_record(record: &Record) -> Self {
+        let state = record.state();
+        Self {
+            commanded: Position::from_bits(record.setpoint_position),
+            origin: None,
+            is_planned: state == State::Ready as u8 || state == State::Moving as u8,
+        }
+    }
+
     /// What there is to see of `axis`.
     #[must_use]
     pub fn of(axis: &Axis<'_>) -> Self {
@@ -107,12 +120,18 @@ impl Operator {
             Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
             Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
             Ask::ArmThread(order) => return Ok(Order::Axis(Request::ArmThread(order))),
+            Ask::SetTravel { low_mm, high_mm } => {
+                let low = self.raw(seen, "low_mm", low_mm)?;
+                let high = self.raw(seen, "high_mm", high_mm)?;
+                let travel = Some(TravelLimits::new(low, high).map_err(ScenarioError::Travel)?);
+                self.planner.set_travel(travel);
+                return Ok(Order::Axis(Request::Travel(travel)));
+            }
             Ask::MoveTo {
                 position_mm,
                 feed_mm_per_min,
             } => {
-                let origin = seen.origin.or(self.start).unwrap_or_default();
-                let target = origin.saturating_add(self.distance("position_mm", position_mm)?);
+                let target = self.raw(seen, "position_mm", position_mm)?;
                 self.planner
                     .move_to(target, self.feed(feed_mm_per_min)?, start)
             }
@@ -147,6 +166,12 @@ impl Operator {
         if matches!(order, Order::Axis(Request::Queue { .. })) {
             self.planner.withdraw();
         }
+    }
+
+    /// The raw position of a coordinate.
+    fn raw(&self, seen: &Seen, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
+        let origin = seen.origin.or(self.start).unwrap_or_default();
+        Ok(origin.saturating_add(self.distance(name, mm)?))
     }
 
     fn distance(&self, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {

@@ -302,6 +302,18 @@ pub const ACTIONS: &[Spec] = &[
     ),
     Spec::ask("stop", "stops, and forgets the target", &[], |_| Ask::Stop),
     Spec::ask(
+        "soft-limits",
+        "sets soft limits of travel",
+        &[
+            number("low_mm", "mm", -1e6, 1e6, "the low one"),
+            number("high_mm", "mm", -1e6, 1e6, "the high one"),
+        ],
+        |values| Ask::SetTravel {
+            low_mm: values[0],
+            high_mm: values[1],
+        },
+    ),
+    Spec::ask(
         "home",
         "looks for the home switch, then for the index",
         &[],
