@@ -4,11 +4,13 @@ mod experiment;
 mod io;
 mod planned;
 mod reconfigure;
+mod request;
 mod requests;
 
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
+pub use request::{Refused, Request};
 
 use crate::capture::{CaptureHealth, Observation, Unwrapper};
 use crate::compensation::{Compensation, ScrewTable, TableRefused};
