@@ -38,10 +38,6 @@ impl Inlet for Plant {
 }
 
 /// Who asks what of the axis.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one for each run, and no heap"
-)]
 pub enum Panel {
     /// The moves of a script.
     Script(Script),
