@@ -106,9 +106,7 @@ impl Ready {
     }
 
     fn ending(&self) -> Option<Ending> {
-        self.axis
-            .experiment()
-            .and_then(Experiment::ending)
+        self.axis.experiment().and_then(Experiment::ending)
     }
 }
 
