@@ -41,8 +41,67 @@ pub enum Command {
     TuneFilter(TuneFilterArgs),
     /// Measures the estimators on the scenes of reference: the tables of accuracy
     Accuracy(AccuracyArgs),
+    /// Finds out by small experiments what a simulated machine's drive does, beginning with its sign
+    Identify(IdentifyArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
+}
+
+/// Arguments of `identify`.
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// The machine, and within what it may be moved
+    #[command(flatten)]
+    pub bench: BenchArgs,
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Draw measured and modelled velocity and their difference in position to FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// A simulated machine that is to be identified.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
+    pub machine: String,
+    /// Control rate, Hz (100 to 40000)
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1000.0,
+        allow_negative_numbers = true
+    )]
+    pub tick_hz: f64,
+    /// Travel within which all experiments stay, half to either side, mm (0.1 to 1000)
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 20.0,
+        allow_negative_numbers = true
+    )]
+    pub window_mm: f64,
+    /// Feed at full command as it is thought to be before it is measured, mm/min
+    #[arg(
+        long,
+        value_name = "MM_PER_MIN",
+        default_value_t = 9600.0,
+        allow_negative_numbers = true
+    )]
+    pub nominal_feed: f64,
+    /// Exchange the wires of the command, to see the wrong polarity found
+    #[arg(long)]
+    pub reverse_drive: bool,
+    /// Seed of everything random
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
+    pub seed: u64,
 }
 
 /// Arguments of `accuracy`.

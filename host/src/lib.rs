@@ -2,6 +2,7 @@
 //! encoder, with reports and plots.
 
 pub mod accuracy;
+pub mod axis_file;
 pub mod calibration;
 pub mod cli;
 pub mod closed_loop;
@@ -10,6 +11,7 @@ pub mod error;
 pub mod fault_names;
 pub mod fault_page;
 pub mod figures;
+pub mod identify;
 pub mod listening;
 pub mod machine_file;
 pub mod map_file;

@@ -48,7 +48,10 @@ pub(crate) fn fill_sections(
             continue;
         }
         let DeValue::Table(table) = value.get_ref() else {
-            return Err(Complaint::new(key.span(), stray_key(name, sections)));
+            return Err(Complaint::new(
+                key.span(),
+                stray_key(name, sections, others),
+            ));
         };
         let fill = Fill {
             section: name,
@@ -80,19 +83,22 @@ impl Visitor for Fill<'_> {
 }
 
 /// What to say of a key that stands above the sections.
-fn stray_key(name: &str, known: &[&str]) -> String {
+fn stray_key(name: &str, known: &[&str], others: &[&str]) -> String {
     if known.contains(&name) {
         format!("`{name}` is a section: write [{name}] and its keys below it")
-    } else if strsim::jaro(name, "base") > 0.8 {
-        format!("unknown key `{name}` above the sections: did you mean `base`?")
+    } else if let Some(near) = others.iter().find(|other| strsim::jaro(name, other) > 0.8) {
+        format!("unknown key `{name}` above the sections: did you mean `{near}`?")
     } else {
+        let alone = others.iter().map(|other| format!("`{other}`"));
+        let alone = alone.collect::<Vec<_>>().join(", ");
+        let stand = if others.len() > 1 { "stand" } else { "stands" };
         let known = known
             .iter()
             .map(|section| format!("[{section}]"))
             .collect::<Vec<_>>()
             .join(", ");
         format!(
-            "unknown key `{name}` above the sections: only `base` stands there, other keys belong in {known}"
+            "unknown key `{name}` above the sections: only {alone} {stand} there, other keys belong in {known}"
         )
     }
 }
@@ -133,7 +139,7 @@ pub fn dump(base: &str, machine: &MachineParams) -> String {
     text
 }
 
-fn section<T: ParameterTable>(text: &mut String, name: &str, params: &T) {
+pub(crate) fn section<T: ParameterTable>(text: &mut String, name: &str, params: &T) {
     // Writing to a string cannot fail.
     let _ = write!(text, "\n[{name}]\n");
     for Field {

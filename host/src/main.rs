@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::{
-    accuracy, calibrate_encoder, demo, replay, sim, sim_encoder, tracking, tune_filter,
+    accuracy, calibrate_encoder, demo, identify, replay, sim, sim_encoder, tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Tracking(args)) => tracking::run(&args),
+        Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
     };
     match done {

@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;
+pub mod identify;
 mod map_figures;
 pub mod replay;
 pub mod sim;
@@ -17,9 +18,12 @@ use std::path::Path;
 
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::units::{TICK_HZ, checked};
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_hal_mock::scenario::Base;
 
 use crate::cli::OutputArgs;
 use crate::error::CommandError;
+use crate::machine_file;
 use crate::plot::PlotError;
 
 /// Most ticks of a run or a replay: what is kept of them takes some 500 bytes each.
@@ -35,6 +39,25 @@ fn estimator(name: &str) -> Result<EstimatorConfig, CommandError> {
             "--estimator {name}: there is no such estimator; choose one of {known}"
         ))
     })
+}
+
+/// The machine of `--machine`, and the built-in one that it is based on.
+fn machine(name: &str) -> Result<(&str, MachineParams), CommandError> {
+    if let Some(machine) = machine_file::built_in(name) {
+        return Ok((name, machine));
+    }
+    let path = Path::new(name);
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "toml")
+        || path.exists()
+    {
+        return Ok(("16k20f3", machine_file::read(path)?));
+    }
+    let known = Base::ALL.map(Base::name).join(", ");
+    Err(CommandError::Usage(format!(
+        "--machine {name}: expected one of {known}, or a file FILE.toml"
+    )))
 }
 
 /// Checks a control rate.

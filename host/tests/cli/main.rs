@@ -6,6 +6,7 @@ mod calibrate_encoder;
 mod capture_files;
 mod demo;
 mod help;
+mod identify;
 mod machine_files;
 mod outputs;
 mod pictures;

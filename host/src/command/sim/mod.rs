@@ -10,10 +10,11 @@ use leadscrew::params::ParamError;
 use leadscrew::units::{RangeError, checked};
 use leadscrew_hal_mock::drive::DriveParams;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::{Base, MoveAndBack, ScenarioError};
+use leadscrew_hal_mock::scenario::{MoveAndBack, ScenarioError};
 
 use super::{
-    MAX_TICKS, check_outputs, estimator, file_name, print, print_json, tick_rate, write_file,
+    MAX_TICKS, check_outputs, estimator, file_name, machine, print, print_json, tick_rate,
+    write_file,
 };
 use crate::cli::SimArgs;
 use crate::error::CommandError;
@@ -72,25 +73,6 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
     } else {
         print(&report.to_text())
     }
-}
-
-/// The machine of `--machine`, and the built-in one that it is based on.
-fn machine(name: &str) -> Result<(&str, MachineParams), CommandError> {
-    if let Some(machine) = machine_file::built_in(name) {
-        return Ok((name, machine));
-    }
-    let path = Path::new(name);
-    if path
-        .extension()
-        .is_some_and(|extension| extension == "toml")
-        || path.exists()
-    {
-        return Ok(("16k20f3", machine_file::read(path)?));
-    }
-    let known = Base::ALL.map(Base::name).join(", ");
-    Err(CommandError::Usage(format!(
-        "--machine {name}: expected one of {known}, or a file FILE.toml"
-    )))
 }
 
 fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, CommandError> {
