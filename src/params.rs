@@ -8,7 +8,7 @@ use core::fmt;
 
 use crate::compensation::CompensationParams;
 use crate::controller::params::LawParams;
-pub use crate::controller::params::{ControllerParams, FilterParams, FrictionParams};
+pub use crate::controller::params::{CalmParams, ControllerParams, FilterParams, FrictionParams};
 use crate::edges::EdgeConfig;
 use crate::estimator::EstimatorConfig;
 use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
@@ -48,6 +48,8 @@ pub struct AxisParams {
     pub filter: FilterParams,
     /// Its feedforward against friction.
     pub friction: FrictionParams,
+    /// Its gains for slow motion and rest.
+    pub calm: CalmParams,
     /// Limits of the output.
     pub output: OutputParams,
     /// Compensation of the screw.
@@ -166,6 +168,7 @@ impl AxisParams {
             controller: ControllerParams::default(),
             filter: FilterParams::default(),
             friction: FrictionParams::default(),
+            calm: CalmParams::default(),
             output: OutputParams::default(),
             compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
@@ -199,6 +202,7 @@ impl AxisParams {
                 controller: &self.controller,
                 filter: &self.filter,
                 friction: &self.friction,
+                calm: &self.calm,
             }
             .quantise(scale, full_velocity, estimators.delay())?,
             output: self.output.quantise(scale)?,

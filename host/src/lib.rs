@@ -21,6 +21,7 @@ pub mod report;
 pub mod sampler;
 pub mod scenario_file;
 pub mod scenario_run;
+pub mod screw;
 pub mod sim_encoder;
 pub mod simulation;
 pub mod statistics;

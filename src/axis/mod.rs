@@ -82,7 +82,9 @@ impl<'m> Axis<'m> {
         let was_enabled = outputs.enabled;
         outputs.tick = tick;
         outputs.count = observation.count;
-        let command = was_enabled.then(|| self.output.command());
+        // What goes against friction does not move the drive that an observer counts on.
+        let command =
+            was_enabled.then(|| (self.output.command()).saturating_sub(self.controller.friction()));
         let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
@@ -285,6 +287,9 @@ impl<'m> Axis<'m> {
         if self.outputs.enabled && self.outputs.moving {
             ReconfigureError::check(&self.config, &config)?;
         }
+        if self.sources.is_tied() && config.sources != self.config.sources {
+            return Err(ReconfigureError::Sources);
+        }
         self.edges.reconfigure(config.edges);
         if config.estimators != self.config.estimators {
             self.estimators = Estimators::new(&config.estimators);
@@ -345,6 +350,12 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// What of the last command goes against friction.
+    #[must_use]
+    pub const fn friction(&self) -> Command {
+        self.controller.friction()
     }
 
     /// The configuration in force.

@@ -15,6 +15,9 @@ impl Axis<'_> {
     /// # Errors
     /// [`SelectError`] while the axis moves or a gear is engaged; what is followed stays.
     pub fn select(&mut self, source: Source) -> Result<(), SelectError> {
+        if self.outputs.moving {
+            return Err(SelectError::Moving);
+        }
         self.sources.select(source)
     }
 
@@ -49,6 +52,9 @@ impl Axis<'_> {
     pub fn arm_thread(&mut self, order: &ThreadOrder) -> Result<ThreadFigures, ThreadRefusal> {
         if !self.supervisor.is_following() {
             return Err(ThreadRefusal::Disabled);
+        }
+        if self.outputs.moving {
+            return Err(ThreadRefusal::Moving);
         }
         let origin = self.homing.origin().unwrap_or(Position::ZERO);
         let now = self.tick.wrapping_sub(1);

@@ -2,6 +2,7 @@
 
 use super::FollowingError;
 use super::biquad::Section;
+use super::dead_time::Config as DeadTimeConfig;
 use super::filter::{Config as FilterConfig, MAX_SECTIONS, MAX_TAPS};
 use super::friction::{Config as FrictionConfig, Friction};
 use crate::estimator::Delay;
@@ -49,6 +50,37 @@ pub struct Extras {
     pub friction: Friction,
     /// Following error within which the integral holds while the setpoint rests, d.
     pub rest_band_d: f64,
+    /// Ticks for which the drive stands at a reversal of its command.
+    pub dead_ticks: f64,
+    /// Command either side of zero that the drive does not answer to.
+    pub least_command: f64,
+    /// Other gains near standstill.
+    pub calm: Option<Calm>,
+}
+
+/// Gains for slow motion and rest, where edges come too seldom for a fast loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calm {
+    /// Gains of the feedback part; the others are as in motion.
+    pub gains: Gains,
+    /// Speed of the setpoint below which they count, d/tick.
+    pub speed: f64,
+    /// Following error above which they do not count, d.
+    pub error: f64,
+    /// Ticks for which the setpoint has to be slower and the error smaller.
+    pub ticks: f64,
+}
+
+/// Weights of the law, by one of its sets of gains.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct GainSet {
+    /// Of the following error, its change, the estimates of v and a, the setpoints of v, a and j. Without filters the
+    /// feedforward is in the latter.
+    weights: [i32; TERMS],
+    shift: u32,
+    /// Half of what is shifted out, and without filters the bias.
+    offset: i64,
+    pub(super) integral_gain: i32,
 }
 
 /// Quantised controller parameters.
@@ -57,14 +89,15 @@ pub struct Extras {
 /// of the products then cannot overflow, and one shift at the end serves all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Of the following error, its change, the estimates of v and a, the setpoints of v, a and j. Without filters the
-    /// feedforward is in the latter.
-    weights: [i32; TERMS],
-    weight_shift: u32,
-    /// Half of what is shifted out, and without filters the bias.
-    offset: i64,
+    pub(super) moving: GainSet,
+    pub(super) calm: GainSet,
+    /// Speed of the setpoint below which the latter counts, Q11.20; below zero: never.
+    pub(super) calm_speed: i32,
+    /// Following error above which it does not count.
+    pub(super) calm_error: i32,
+    /// Ticks for which both have to be smaller.
+    pub(super) calm_ticks: u32,
     deadband: i32,
-    pub(super) integral_gain: i32,
     /// Largest following error at which the integral holds at rest; below zero for none.
     pub(super) rest_band: i32,
     pub(super) transfer_decay: u32,
@@ -74,6 +107,7 @@ pub struct Config {
     feedforward_shift: u32,
     feedforward_offset: i64,
     pub(super) friction: FrictionConfig,
+    pub(super) dead_time: DeadTimeConfig,
 }
 
 impl Config {
@@ -114,29 +148,47 @@ impl Config {
         extras: &Extras,
     ) -> Result<Self, RangeError> {
         let filter = FilterConfig::new(&extras.taps, extras.sections)?;
-        let links = feedback(gains, delay)?;
         let ahead = feedforward(gains)?;
+        let bias_share = bias;
         let bias = scaled(checked("bias", bias, -1.0, 1.0)?, Command::FRAC_NBITS);
-        let (all, beside, biases) = if filter.is_on() {
-            (links, ahead, [0, bias])
+        let (within, beside, biases) = if filter.is_on() {
+            ([0.0; SETPOINTS], ahead, [0, bias])
         } else {
-            (with_feedforward(links, ahead), [0.0; SETPOINTS], [bias, 0])
+            (ahead, [0.0; SETPOINTS], [bias, 0])
         };
-        let (weights, weight_shift) = quantise(&all)?;
+        let [within_bias, feedforward_offset] = biases.map(i64::from);
+        let set = |gains: &Gains| GainSet::new(gains, delay, within, within_bias);
         let (feedforward, feedforward_shift) = quantise(&beside)?;
-        let [offset, feedforward_offset] = biases.map(i64::from);
-        let integral = checked("integral_gain_per_d_tick", gains.integral, 0.0, 1.9e-3)?;
+        let moving = set(gains)?;
+        let (calm, calm_speed, calm_error, calm_ticks) = match &extras.calm {
+            Some(calm) => (
+                set(&calm.gains)?,
+                scaled(
+                    checked("calm_d_per_tick", calm.speed, 0.0, 2047.0)?,
+                    Velocity::FRAC_NBITS,
+                ),
+                scaled(
+                    checked("calm_error_d", calm.error, 0.0, 3e4)?,
+                    FollowingError::FRAC_NBITS,
+                ),
+                checked("calm_ticks", calm.ticks, 0.0, 1e6)? as u32,
+            ),
+            None => (moving, -1, 0, u32::MAX),
+        };
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
         let rest_band = checked("rest_band_d", extras.rest_band_d, 0.0, 1000.0)?;
         Ok(Self {
-            weights,
-            weight_shift,
-            offset: shifted(offset, weight_shift),
+            moving,
+            calm,
+            calm_speed,
+            calm_error,
+            calm_ticks,
             feedforward,
             feedforward_shift,
             feedforward_offset: shifted(feedforward_offset, feedforward_shift),
             filter,
             friction: FrictionConfig::new(&extras.friction)?,
+            dead_time: DeadTimeConfig::new(extras.dead_ticks, bias_share, extras.least_command)?,
             deadband: scaled(
                 checked("deadband_d", deadband_d, 0.0, 1000.0)?,
                 FollowingError::FRAC_NBITS,
@@ -146,12 +198,6 @@ impl Config {
             } else {
                 -1
             },
-            integral_gain: scaled(
-                integral,
-                Command::FRAC_NBITS
-                    .wrapping_add(INTEGRAL_SHIFT)
-                    .wrapping_sub(FollowingError::FRAC_NBITS),
-            ),
             transfer_decay: libm::round(libm::ldexp(libm::exp(-1.0 / transfer), 31)) as u32,
         })
     }
@@ -167,18 +213,41 @@ impl Config {
         }
     }
 
-    /// Weighted sum of the signals, Q.30, without filters with the bias. The weights add up to less than 2³¹, so the sum
-    /// of products stays within ±2⁶².
-    #[inline]
-    pub(super) fn weigh(&self, signals: &[i32; TERMS]) -> i64 {
-        weighed(&self.weights, signals, self.offset).wrapping_shr(self.weight_shift)
-    }
-
     /// Where there are filters, bias and feedforward of the setpoints of v, a and j, Q.30.
     #[inline]
     pub(super) fn ahead(&self, setpoints: &[i32; SETPOINTS]) -> i64 {
         weighed(&self.feedforward, setpoints, self.feedforward_offset)
             .wrapping_shr(self.feedforward_shift)
+    }
+}
+
+impl GainSet {
+    fn new(
+        gains: &Gains,
+        delay: Delay,
+        within: [f64; SETPOINTS],
+        bias: i64,
+    ) -> Result<Self, RangeError> {
+        let (weights, shift) = quantise(&with_feedforward(feedback(gains, delay)?, within))?;
+        let integral = checked("integral_gain_per_d_tick", gains.integral, 0.0, 1.9e-3)?;
+        Ok(Self {
+            weights,
+            shift,
+            offset: shifted(bias, shift),
+            integral_gain: scaled(
+                integral,
+                Command::FRAC_NBITS
+                    .wrapping_add(INTEGRAL_SHIFT)
+                    .wrapping_sub(FollowingError::FRAC_NBITS),
+            ),
+        })
+    }
+
+    /// Weighted sum of the signals, Q.30, without filters with the bias. The weights add up to less than 2³¹, so the sum
+    /// of products stays within ±2⁶².
+    #[inline]
+    pub(super) fn weigh(&self, signals: &[i32; TERMS]) -> i64 {
+        weighed(&self.weights, signals, self.offset).wrapping_shr(self.shift)
     }
 }
 

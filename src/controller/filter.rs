@@ -69,6 +69,17 @@ impl Config {
         self.section_count != 0 || self.tap_count != 0
     }
 
+    /// What `feedback` comes to after a long time, Q.30; without filters it passes as it is.
+    #[must_use]
+    pub fn steady(&self, feedback: i64) -> i64 {
+        if !self.is_on() {
+            return feedback;
+        }
+        i64::from(bounded(feedback))
+            .wrapping_mul(i64::from(self.steady_gain))
+            .wrapping_shr(Command::FRAC_NBITS)
+    }
+
     /// The sections in use.
     pub fn sections(&self) -> impl Iterator<Item = &Section> {
         self.sections.iter().take(self.section_count)
@@ -108,9 +119,7 @@ impl State {
     #[cold]
     #[inline(never)]
     pub fn steady(config: &Config, feedback: i64) -> Self {
-        let gain = i64::from(config.steady_gain);
-        let wanted = i64::from(bounded(feedback)).wrapping_mul(gain);
-        let value = bounded(wanted.wrapping_shr(Command::FRAC_NBITS));
+        let value = bounded(config.steady(feedback));
         Self {
             sections: [SectionState::steady(value); MAX_SECTIONS],
             past: [value; MAX_TAPS],

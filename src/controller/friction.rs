@@ -149,6 +149,13 @@ impl State {
         Self { level: 0 }
     }
 
+    /// The level in force.
+    #[inline]
+    #[must_use]
+    pub const fn level(&self) -> Command {
+        Command::from_bits(self.level)
+    }
+
     /// One tick; the level after it.
     #[inline]
     pub fn step(&mut self, config: &Config, setpoint: &Setpoint) -> i32 {

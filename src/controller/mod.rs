@@ -24,6 +24,7 @@
 
 pub mod biquad;
 pub mod config;
+pub mod dead_time;
 pub mod filter;
 pub mod friction;
 pub mod params;
@@ -36,7 +37,7 @@ use crate::setpoint::Setpoint;
 use crate::units::{Command, Position};
 
 use crate::estimator::saturate;
-use config::INTEGRAL_SHIFT;
+use config::{INTEGRAL_SHIFT, TERMS};
 
 /// Following error x_set − x in Q15.16 d; saturates at ±32 768 d.
 pub type FollowingError = fixed::types::I16F16;
@@ -52,8 +53,11 @@ pub struct Controller {
     previous_following_error: i32,
     /// There was no previous tick.
     fresh: bool,
+    /// Ticks for which the setpoint has been slow; counts no further than it matters.
+    slow_ticks: u32,
     filter: filter::State,
     friction: friction::State,
+    dead_time: dead_time::State,
     /// What is left of the last jump of the law, Q.30; a jump across the range of a command needs 33 bits.
     transfer: i64,
     /// The next demand is to start from this output.
@@ -76,8 +80,10 @@ impl Controller {
         Self {
             config,
             integral: 0,
+            slow_ticks: u32::MAX,
             filter: filter::State::new(),
             friction: friction::State::new(),
+            dead_time: dead_time::State::new(),
             previous_error: 0,
             previous_following_error: 0,
             fresh: true,
@@ -126,12 +132,18 @@ impl Controller {
         ];
         self.previous_error = error;
         self.previous_following_error = following_error.to_bits();
+        let calm = self.is_calm(&signals, setpoint);
+        let set = if calm {
+            &self.config.calm
+        } else {
+            &self.config.moving
+        };
+        let mut law = set.weigh(&signals);
         if !(self.config.rest_band >= error.saturating_abs() && is_at_rest(setpoint)) {
-            self.integrate(error, active);
+            let increment = i64::from(error).wrapping_mul(i64::from(set.integral_gain));
+            self.integrate(increment, active);
         }
-
-        let integral = self.integral.wrapping_shr(INTEGRAL_SHIFT);
-        let mut law = self.config.weigh(&signals).wrapping_add(integral);
+        law = law.wrapping_add(self.integral.wrapping_shr(INTEGRAL_SHIFT));
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
@@ -139,11 +151,25 @@ impl Controller {
             let level = self.friction.step(&self.config.friction, setpoint);
             law = law.wrapping_add(i64::from(level));
         }
+        if self.config.dead_time.is_on() {
+            let friction = self.friction.level().to_bits();
+            let resting = is_at_rest(setpoint);
+            law = self
+                .dead_time
+                .step(&self.config.dead_time, law, friction, resting);
+        }
         let command = self.without_jump(saturate(law));
         Demand {
             command: Command::from_bits(command),
             following_error,
         }
+    }
+
+    /// What of the last demand goes against friction alone: the rest of it is what moves the axis.
+    #[inline]
+    #[must_use]
+    pub const fn friction(&self) -> Command {
+        self.friction.level()
     }
 
     /// The feedback part through the filters, and what passes by them.
@@ -162,9 +188,46 @@ impl Controller {
         config.ahead(&setpoints).wrapping_add(i64::from(filtered))
     }
 
+    /// Whether the gains for slow motion count; what the law would jump by when they begin to is let in.
+    #[inline]
+    fn is_calm(&mut self, signals: &[i32; TERMS], setpoint: &Setpoint) -> bool {
+        let was_calm = self.slow_ticks >= self.config.calm_ticks;
+        let speed = setpoint.velocity.to_bits().saturating_abs();
+        let [error, ..] = *signals;
+        // Eight times as much to leave as to come: the other gains, at rest, may be what makes the error.
+        let bound = if was_calm {
+            self.config.calm_error.saturating_mul(8)
+        } else {
+            self.config.calm_error
+        };
+        let is_slow = speed <= self.config.calm_speed && error.saturating_abs() <= bound;
+        self.slow_ticks = if !is_slow {
+            0
+        } else {
+            self.slow_ticks.saturating_add(1)
+        };
+        let calm = self.slow_ticks >= self.config.calm_ticks;
+        if calm && !was_calm {
+            self.calm_down(signals);
+        }
+        calm
+    }
+
+    /// The transfer term takes up what the gains for motion make of the signals and the calm ones do not. On the way back
+    /// there is none: what would be held back then is what corrects the start of a motion.
+    #[cold]
+    #[inline(never)]
+    fn calm_down(&mut self, signals: &[i32; TERMS]) {
+        const MOST: i64 = 1 << 32;
+        let Config { moving, calm, .. } = &self.config;
+        let jump = moving.weigh(signals).wrapping_sub(calm.weigh(signals));
+        let transfer = self.transfer.wrapping_add(self.config.filter.steady(jump));
+        self.transfer = transfer.clamp(1 - MOST, MOST - 1);
+    }
+
     /// Adds the error to the integral unless the output is at a limit and the error drives into it.
-    fn integrate(&mut self, error: i32, active: ActiveLimits) {
-        let increment = i64::from(error).wrapping_mul(i64::from(self.config.integral_gain));
+    #[inline]
+    fn integrate(&mut self, increment: i64, active: ActiveLimits) {
         let driven_further = (increment > 0 && active.high) || (increment < 0 && active.low);
         if !driven_further {
             let full = i64::from(Command::ONE.to_bits()).wrapping_shl(INTEGRAL_SHIFT);

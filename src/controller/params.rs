@@ -1,7 +1,7 @@
 //! Parameters of the control law in physical units, and their quantisation.
 
 use super::biquad::Section;
-use super::config::{Config, Extras, Gains};
+use super::config::{Calm, Config, Extras, Gains};
 use super::filter::MAX_TAPS;
 use super::friction::Friction;
 use crate::estimator::Delay;
@@ -45,6 +45,26 @@ parameter_table! {
 }
 
 parameter_table! {
+    /// Gains for slow motion and rest, where edges come too seldom for a fast loop: none.
+    pub struct CalmParams {
+        /// Feed of the setpoint below which they count; 0 for never
+        below_mm_per_min: 0.0, "mm/min", 0.0..=1e5;
+        /// Following error above which they do not begin to; eight times as much ends them
+        within_mm: 10.0, "mm", 0.0..=10.0;
+        /// Time for which both have to be smaller
+        after_s: 0.3, "s", 0.0..=10.0;
+        /// kp
+        position_gain_per_s: 0.0, "1/s", 0.0..=1e4;
+        /// ki
+        integral_gain_per_s2: 0.0, "1/s²", 0.0..=1e6;
+        /// kv: velocity demand per velocity error
+        velocity_gain: 0.0, "1", -1e4..=1e4;
+        /// ka: velocity demand per acceleration error
+        acceleration_gain_s: 0.0, "s", -10.0..=10.0;
+    }
+}
+
+parameter_table! {
     /// Filters of the feedback part: none. A frequency of 0 is off.
     pub struct FilterParams {
         /// Frequency of the notch
@@ -65,7 +85,7 @@ parameter_table! {
 }
 
 parameter_table! {
-    /// Feedforward against friction, as the feed that the command loses: none.
+    /// What the drive and its guides lose, fed forward: friction as the feed that the command loses, and dead time. None.
     pub struct FrictionParams {
         /// Kinetic friction forward
         forward_mm_per_min: 0.0, "mm/min", 0.0..=1e5;
@@ -79,8 +99,12 @@ parameter_table! {
         stribeck_mm_per_min: 60.0, "mm/min", 0.02..=1e5;
         /// Feed of the setpoint from which on it counts as motion
         least_mm_per_min: 0.1, "mm/min", 0.0..=1e3;
+        /// Time for which the drive stands at a reversal of its command
+        dead_time_s: 0.0, "s", 0.0..=0.1;
+        /// Command either side of zero that the drive takes for none
+        least_command: 5e-5, "of full command", 0.0..=0.1;
         /// Time in which the largest level comes or goes
-        rise_s: 0.005, "s", 0.0..=1.0;
+        rise_s: 0.001, "s", 0.0..=1.0;
     }
 }
 
@@ -93,6 +117,19 @@ pub struct LawParams<'a> {
     pub filter: &'a FilterParams,
     /// Friction.
     pub friction: &'a FrictionParams,
+    /// Slow motion and rest.
+    pub calm: &'a CalmParams,
+}
+
+/// Gains on the state of now, taps of the prediction and sections.
+#[derive(Clone, Copy, Debug)]
+pub struct Feedback {
+    /// Gains.
+    pub gains: Gains,
+    /// Taps.
+    pub taps: [f64; MAX_TAPS],
+    /// Sections.
+    pub sections: [Option<Section>; 2],
 }
 
 impl LawParams<'_> {
@@ -109,6 +146,7 @@ impl LawParams<'_> {
         self.controller.check()?;
         self.filter.check()?;
         self.friction.check()?;
+        self.calm.check()?;
         let rate = scale.tick_hz();
         let params = self.controller;
         let (gains, taps) = self.predicted(scale, full_velocity)?;
@@ -117,6 +155,9 @@ impl LawParams<'_> {
             sections: self.filter.sections(rate)?,
             friction: self.friction.in_ticks(scale, full_velocity, params)?,
             rest_band_d: scale.counts_from_mm(params.rest_band_mm),
+            dead_ticks: self.friction.dead_time_s * rate,
+            least_command: self.friction.least_command,
+            calm: self.calm(scale, full_velocity, taps.iter().sum())?,
         };
         Config::with_extras(
             &gains,
@@ -126,6 +167,54 @@ impl LawParams<'_> {
             (params.transfer_time_s * rate).max(1.0),
             &extras,
         )
+    }
+
+    /// The gains for slow motion. They need no prediction, but the taps, whose sum is `taps`, stay: what is held under
+    /// them is made up for.
+    fn calm(
+        &self,
+        scale: AxisScale,
+        full_velocity: f64,
+        taps: f64,
+    ) -> Result<Option<Calm>, RangeError> {
+        let calm = self.calm;
+        if calm.below_mm_per_min == 0.0 {
+            return Ok(None);
+        }
+        let params = ControllerParams {
+            position_gain_per_s: calm.position_gain_per_s,
+            integral_gain_per_s2: calm.integral_gain_per_s2,
+            velocity_gain: calm.velocity_gain,
+            acceleration_gain_s: calm.acceleration_gain_s,
+            ..*self.controller
+        };
+        let gains = params.gains(scale, full_velocity);
+        let whole = 1.0 + taps;
+        Ok(Some(Calm {
+            gains: Gains {
+                position: gains.position * whole,
+                velocity: gains.velocity * whole,
+                acceleration: gains.acceleration * whole,
+                ..gains
+            },
+            speed: scale.velocity_from_feed(calm.below_mm_per_min)?,
+            error: scale.counts_from_mm(calm.within_mm),
+            ticks: calm.after_s * scale.tick_hz(),
+        }))
+    }
+
+    /// The feedback part of the law as it is in motion, in `f64`.
+    ///
+    /// # Errors
+    /// As [`Self::quantise`].
+    pub fn feedback(&self, scale: AxisScale, full_velocity: f64) -> Result<Feedback, RangeError> {
+        let (gains, taps) = self.predicted(scale, full_velocity)?;
+        let sections = self.filter.sections(scale.tick_hz())?;
+        Ok(Feedback {
+            gains,
+            taps,
+            sections,
+        })
     }
 
     /// Gains on the state of now, and the taps of the prediction.

@@ -4,8 +4,10 @@
 //! begins is free (the mean of its errors is taken out), so that what an encoder adds to a whole motion does not count. Gauss–Newton with Levenberg's damping;
 //! derivatives come from drives that run beside the first one, each with one parameter moved.
 //!
-//! The covariance is the sandwich H⁻¹·(Σ s·sᵀ)·H⁻¹ over the scores s of whole clusters of records: errors of an encoder
-//! and of a drive are not white, and what repeats within a cluster counts once.
+//! The covariance is the larger of two that do not take errors as white, since those of an encoder and of a drive are
+//! not: the sandwich H⁻¹·(Σ s·sᵀ)·H⁻¹ over the scores s of clusters of a period and a half, and the jackknife over the
+//! chunks, which is how far the solution would move without each of them. To it comes what long waves of the encoder
+//! could do, over which every chunk passes alike.
 
 use super::drive::{Drive, NO_LIMIT, PARAMETERS, Vector, place};
 use super::matrix::{Matrix, part, set};
@@ -77,6 +79,20 @@ impl Sums {
             *sum += slope;
             *weighted += slope * error;
         }
+    }
+}
+
+impl Sums {
+    /// Products and weighted slopes about their means.
+    fn centred(&self) -> (Matrix, Vector) {
+        let count = self.count.max(1.0);
+        let mut products = self.products;
+        products.add_product(&self.slopes, &self.slopes, -1.0 / count);
+        let mut weighted = self.weighted;
+        for (sum, slope) in weighted.iter_mut().zip(&self.slopes) {
+            *sum -= slope * self.error / count;
+        }
+        (products, weighted)
     }
 }
 
@@ -157,16 +173,10 @@ impl Problem<'_> {
         let mut gradient = [0.0; PARAMETERS];
         let mut drives = self.drives(vector);
         for chunk in self.chunks() {
-            let sums = self.sums(vector, chunk, &mut drives);
-            for i in 0..PARAMETERS {
-                let mean = part(&sums.slopes, i) / sums.count.max(1.0);
-                set(&mut gradient, i, |g| {
-                    g + part(&sums.weighted, i) - mean * sums.error
-                });
-                for j in 0..PARAMETERS {
-                    let centred = sums.products.at(i, j) - mean * part(&sums.slopes, j);
-                    normal.set(i, j, normal.at(i, j) + centred);
-                }
+            let (products, weighted) = self.sums(vector, chunk, &mut drives).centred();
+            normal.add(&products, 1.0);
+            for (sum, part) in gradient.iter_mut().zip(&weighted) {
+                *sum += part;
             }
         }
         let i = place::LN_STRIBECK;
@@ -195,26 +205,33 @@ impl Problem<'_> {
         let (normal, _) = self.normal(&vector, cost);
         let inverse = normal.inverse()?;
         let free = self.free.iter().filter(|free| **free).count() as f64;
-        let mut wide = Clusters::default();
+        let mut wide = Matrix::ZERO;
         let mut narrow = Clusters::default();
-        let mut records = 0.0;
+        let (mut records, mut chunks) = (0.0_f64, 0.0_f64);
         let mut peak = 0.0_f64;
         let length = self.narrow_cluster(&vector);
+        let mut waves = Waves::new(self.records);
         let (mut drives, mut ahead) = (self.drives(&vector), self.drives(&vector));
         for chunk in self.chunks() {
             let sums = self.sums(&vector, chunk, &mut ahead);
             records += sums.count;
+            chunks += 1.0;
+            // What the solution would move by without this chunk.
+            let (products, weighted) = sums.centred();
+            let mut without = normal;
+            without.add(&products, -1.0);
+            let moved = without.inverse().unwrap_or(inverse).apply(&weighted);
+            wide.add_product(&moved, &moved, 1.0);
             let means = sums.slopes.map(|sum| sum / sums.count.max(1.0));
             let mean_error = sums.error / sums.count.max(1.0);
             let mut index = 0_usize;
             self.run(chunk, &mut drives, |error, drives| {
-                let slopes = self.slopes(&vector, drives);
-                let mut score = [0.0; PARAMETERS];
-                for (i, place) in score.iter_mut().enumerate() {
-                    *place = (part(&slopes, i) - part(&means, i)) * (error - mean_error);
+                let mut slopes = self.slopes(&vector, drives);
+                for (slope, mean) in slopes.iter_mut().zip(&means) {
+                    *slope -= mean;
                 }
-                wide.add(&score);
-                narrow.add(&score);
+                waves.add(&slopes);
+                narrow.add(&slopes.map(|slope| slope * (error - mean_error)));
                 index = index.wrapping_add(1);
                 if index.is_multiple_of(length) {
                     narrow.end();
@@ -223,26 +240,23 @@ impl Problem<'_> {
                     peak = peak.max(libm::fabs(drive.acceleration()));
                 }
             });
-            wide.end();
             narrow.end();
         }
-        let sandwich = |clusters: &Clusters| {
-            let freedom = (clusters.count - free).max(2.0);
-            let covariance = inverse.times(&clusters.products).times(&inverse);
-            (covariance, clusters.count / freedom)
-        };
-        let (wide, narrow) = (sandwich(&wide), sandwich(&narrow));
-        let mut covariance = Matrix::ZERO;
+        let freedom = narrow.count / (narrow.count - free).max(2.0);
+        let narrow = inverse.times(&narrow.products).times(&inverse);
+        let jackknife = (chunks - 1.0) / chunks.max(1.0);
+        let variance = cost / records.max(1.0);
+        let mut covariance = waves.covariance(&inverse, variance);
         for i in 0..PARAMETERS {
             for j in 0..PARAMETERS {
                 let scale = |k: usize| {
-                    let (of_wide, of_narrow) =
-                        (wide.0.at(k, k) * wide.1, narrow.0.at(k, k) * narrow.1);
-                    let base = narrow.0.at(k, k).max(1e-300);
-                    libm::sqrt(of_wide.max(of_narrow) / base)
+                    let (wide, narrow) = (wide.at(k, k) * jackknife, narrow.at(k, k));
+                    libm::sqrt((narrow * freedom).max(wide) / narrow.max(1e-300))
                 };
-                if part_free(&self.free, i) && part_free(&self.free, j) {
-                    covariance.set(i, j, narrow.0.at(i, j) * scale(i) * scale(j));
+                let of_both = narrow.at(i, j) * scale(i) * scale(j);
+                covariance.set(i, j, covariance.at(i, j) + of_both);
+                if !(part_free(&self.free, i) && part_free(&self.free, j)) {
+                    covariance.set(i, j, 0.0);
                 }
             }
         }
@@ -403,6 +417,64 @@ impl Clusters {
         }
         self.score = [0.0; PARAMETERS];
         self.is_empty = true;
+    }
+}
+
+/// Lengths of the waves of an encoder that are thought of, of the travel.
+const WAVES: [f64; 4] = [0.35, 0.7, 1.4, 2.8];
+
+/// An encoder has two long waves: one a revolution from its eccentricity, and the second harmonic.
+const SHARE_OF_WAVES: f64 = 2.0 / WAVES.len() as f64;
+
+/// What long waves of the encoder do to the parameters. Every chunk passes over the same ones, so neither clusters nor
+/// chunks show them; they are taken to have the variance of the errors that are left.
+struct Waves<'r> {
+    records: Records<'r>,
+    index: usize,
+    position: f64,
+    length: f64,
+    scores: [[Vector; 2]; WAVES.len()],
+}
+
+impl<'r> Waves<'r> {
+    fn new(records: Records<'r>) -> Self {
+        let (mut position, mut low, mut high) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for record in records.iter() {
+            position += record.travel_d;
+            low = low.min(position);
+            high = high.max(position);
+        }
+        Self {
+            records,
+            index: 0,
+            position: 0.0,
+            length: (high - low).max(1.0),
+            scores: [[[0.0; PARAMETERS]; 2]; WAVES.len()],
+        }
+    }
+
+    /// Takes the slopes of the next record.
+    fn add(&mut self, slopes: &Vector) {
+        let record = self.records.get(self.index).unwrap_or_default();
+        self.position += record.travel_d;
+        self.index = self.index.wrapping_add(1);
+        for (share, [sine, cosine]) in WAVES.iter().zip(&mut self.scores) {
+            let angle = core::f64::consts::TAU * self.position / (share * self.length);
+            let (s, c) = libm::sincos(angle);
+            for ((sine, cosine), slope) in sine.iter_mut().zip(cosine).zip(slopes) {
+                *sine += s * slope;
+                *cosine += c * slope;
+            }
+        }
+    }
+
+    fn covariance(&self, inverse: &Matrix, variance: f64) -> Matrix {
+        let mut covariance = Matrix::ZERO;
+        for score in self.scores.iter().flatten() {
+            let moved = inverse.apply(score);
+            covariance.add_product(&moved, &moved, variance * SHARE_OF_WAVES);
+        }
+        covariance
     }
 }
 

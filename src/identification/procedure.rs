@@ -12,13 +12,16 @@ use super::program::Program;
 use super::recorder::{Recorder, Records};
 use super::refusal::Refusal;
 use super::{conclusion, seed};
-use crate::axis::Axis;
+use crate::axis::{Axis, StartError};
+use crate::supervisor::Fault;
 use crate::units::AxisScale;
 
 /// Fewest records that there must be room for.
 pub const MIN_RECORDS: usize = 6000;
 /// Travel that shows that a ramp broke the axis away, d.
 const BROKE_AWAY_D: f64 = 3.0;
+/// Longest wait for rest before an experiment, s.
+const LONGEST_WAIT_S: f64 = 3.0;
 /// Travel in a rest that shows that nothing holds the axis, d.
 const DRIFTS_D: f64 = 4.0;
 
@@ -72,6 +75,8 @@ pub struct Identification<'w> {
     recorder: Recorder<'w>,
     stage: Option<Stage>,
     running: bool,
+    /// A program that waits for rest, and for how many ticks it has.
+    waiting: Option<(Program, u32)>,
     /// Count at which all of it began.
     centre: i64,
     /// Level of the proof.
@@ -108,6 +113,7 @@ impl<'w> Identification<'w> {
             recorder: Recorder::new(memory),
             stage: None,
             running: false,
+            waiting: None,
             centre: 0,
             level: 0.0,
             drifts: false,
@@ -139,6 +145,9 @@ impl<'w> Identification<'w> {
     /// # Errors
     /// [`Refusal`]. The loop then stays open at zero command: disable the axis before it is released.
     pub fn tend(&mut self, axis: &mut Axis<'_>) -> Result<Option<Identified>, Refusal> {
+        if let Some((program, waited)) = self.waiting.take() {
+            return self.start(axis, program, waited).map(|()| None);
+        }
         let mut ending = None;
         if let Some(experiment) = axis.experiment() {
             self.feed(experiment);
@@ -147,15 +156,40 @@ impl<'w> Identification<'w> {
         if self.running {
             return Ok(None);
         }
+        if let Some(fault) = axis.outputs().fault {
+            self.judge(fault)?;
+        }
         match self.next(axis.outputs().count, ending)? {
-            Next::Run(program) => {
-                axis.start_experiment(&program)?;
-                Ok(None)
-            }
+            Next::Run(program) => self.start(axis, program, 0).map(|()| None),
             Next::Done(identified) => {
                 axis.release_experiment();
                 Ok(Some(identified))
             }
+        }
+    }
+
+    /// What a fault that cut the proof of the sign short says of it.
+    fn judge(&self, fault: Fault) -> Result<(), Refusal> {
+        let [moved_d, _] = pulses(self.recorder.records());
+        let level = self.level;
+        match (self.stage, fault) {
+            (Some(Stage::Proof), Fault::EncoderLoss) => Err(Refusal::NoMotion { level, moved_d }),
+            (Some(Stage::Proof), Fault::MotionAgainstCommand) => {
+                Err(Refusal::WrongPolarity { level, moved_d })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Starts a program as soon as the axis has come to rest.
+    fn start(&mut self, axis: &mut Axis<'_>, program: Program, waited: u32) -> Result<(), Refusal> {
+        let most = LONGEST_WAIT_S * self.plan.tick_hz;
+        match axis.start_experiment(&program) {
+            Err(StartError::NotAtRest) if f64::from(waited) < most => {
+                self.waiting = Some((program, waited.saturating_add(1)));
+                Ok(())
+            }
+            started => Ok(started?),
         }
     }
 

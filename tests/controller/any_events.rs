@@ -15,6 +15,7 @@ use crate::seeded::seeded;
 
 /// What may happen to an axis between two ticks and in the next one.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "few of them, in a test")]
 enum Event {
     /// Words of the hardware, and the enable line.
     Tick {

@@ -9,6 +9,7 @@ mod law;
 mod law_oracle;
 mod links;
 mod output;
+mod parts;
 #[path = "../support/seeded.rs"]
 mod seeded;
 mod signals;

@@ -31,10 +31,12 @@ fn assert_close(bench: &Bench, found: &Identified, share: f64) {
         share * drive.damping,
     );
     near("delay", found.delay_s, drive.delay_s, 0.2 * share * period);
+    // The simulated drive counts both in whole ticks.
+    let whole = |time_s: f64| (time_s * bench.tick_hz).round() / bench.tick_hz;
     near(
         "dead time",
         found.dead_time_s,
-        drive.dead_time_s,
+        whole(drive.dead_time_s),
         0.2 * share * period,
     );
 }
@@ -67,8 +69,9 @@ fn other_drives_are_found() {
         bench.machine.drive.natural_period_s = natural_period_s;
         bench.machine.drive.damping = damping;
         bench.machine.drive.delay_s = delay_s;
+        // A slow drive needs room to settle.
+        bench.params.window_mm = if natural_period_s > 0.2 { 60.0 } else { 20.0 };
         let found = bench.identified();
-        println!("{natural_period_s} {damping} {delay_s}: {found:#?}");
         assert_close(&bench, &found, 0.03);
     }
 }

@@ -6,7 +6,8 @@ use leadscrew::estimator::paths::Choice;
 use leadscrew::hal::Capture;
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{
-    AxisConfig, AxisParams, ControllerParams, MotionParams, OutputParams, ParamError,
+    AxisConfig, AxisParams, CalmParams, ControllerParams, FilterParams, FrictionParams,
+    MotionParams, OutputParams, ParamError,
 };
 use leadscrew::supervisor::SupervisorParams;
 use leadscrew::units::RangeError;
@@ -112,6 +113,9 @@ fn assert_fields_are_guarded<T: ParameterTable>(place: impl Fn(&mut AxisParams, 
 #[test]
 fn every_field_beyond_its_range_is_refused_by_name_value_and_range() {
     assert_fields_are_guarded::<ControllerParams>(|params, table| params.controller = table);
+    assert_fields_are_guarded::<FilterParams>(|params, table| params.filter = table);
+    assert_fields_are_guarded::<FrictionParams>(|params, table| params.friction = table);
+    assert_fields_are_guarded::<CalmParams>(|params, table| params.calm = table);
     assert_fields_are_guarded::<OutputParams>(|params, table| params.output = table);
     assert_fields_are_guarded::<MotionParams>(|params, table| params.motion = table);
     assert_fields_are_guarded::<SupervisorParams>(|params, table| params.supervisor = table);

@@ -10,3 +10,4 @@ mod requests;
 mod seeded;
 mod step_dir;
 mod thread;
+mod thread_refusals;

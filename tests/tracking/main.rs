@@ -1,5 +1,7 @@
 //! The tables of tracking against their golden copy, and the peer that they compare with.
 
+mod peer;
+
 use std::sync::LazyLock;
 
 use leadscrew_host::tracking::{Figures, figures};

@@ -64,6 +64,8 @@ fn golden_tables() -> Result<()> {
             "--test",
             "accuracy",
             "--test",
+            "tracking",
+            "--test",
             "docs",
             "--test",
             "supervisor",

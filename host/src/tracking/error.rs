@@ -3,11 +3,13 @@
 use leadscrew::encoder_map::error::MapError;
 use leadscrew::params::ParamError;
 use leadscrew::supervisor::Fault;
+use leadscrew::tuning::autotune::AutotuneError;
 use leadscrew::units::RangeError;
 use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::calibration::CalibrationError;
+use crate::threads::ThreadError;
 
 /// Why there are no tables.
 #[derive(Debug, Error)]
@@ -45,6 +47,12 @@ pub enum TrackingError {
         /// Why.
         error: Box<TrackingError>,
     },
+    /// No tuning can be offered.
+    #[error("{0}")]
+    Autotune(AutotuneError),
+    /// A thread was not cut.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
     /// A relay makes no limit cycle.
     #[error("the relay of {effort_d_per_s} d/s did not switch in {ticks} ticks: raise the effort")]
     NoLimitCycle {
@@ -53,4 +61,10 @@ pub enum TrackingError {
         /// How long it was waited for.
         ticks: u32,
     },
+}
+
+impl From<AutotuneError> for TrackingError {
+    fn from(error: AutotuneError) -> Self {
+        Self::Autotune(error)
+    }
 }

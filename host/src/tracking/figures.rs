@@ -128,6 +128,55 @@ pub struct CreepRow {
     pub rms: f64,
 }
 
+/// The carriage by a laser: largest errors, d; where no table came about they are infinite.
+#[derive(Clone, Debug, Serialize)]
+pub struct CarriageRow {
+    /// The machine.
+    pub machine: &'static str,
+    /// Carriage less place before compensation.
+    pub positioning_before: f64,
+    /// The same with the screw's table.
+    pub positioning: Judged,
+    /// Difference of a target reached from below and from above, before compensation.
+    pub reversal_before: f64,
+    /// The same with the table, which holds both directions.
+    pub reversal: Judged,
+    /// Its mean over all targets with the machine's backlash as a parameter, and no table.
+    pub mean_reversal_of_backlash: f64,
+    /// Largest setpoint less encoder at rest with the table.
+    pub standing: f64,
+    /// Why no table came about, or the axis did not take it.
+    pub refused: Option<String>,
+}
+
+/// A pass of a thread.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ThreadPass {
+    /// Speed of the spindle, rpm.
+    pub rpm: f64,
+    /// Number of the pass at this speed, from 1.
+    pub pass: u32,
+    /// Mean phase, °.
+    pub phase_deg: f64,
+    /// Largest deviation from it, d.
+    pub instantaneous_d: f64,
+    /// Largest following error, d.
+    pub following_d: f64,
+    /// Pitch error over 100 mm, d.
+    pub pitch_error: Judged,
+}
+
+/// Threads on a machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Threads {
+    /// The machine.
+    pub machine: &'static str,
+    /// All passes at all speeds.
+    pub passes: Vec<ThreadPass>,
+    /// Largest difference of phase between any two of them, °.
+    pub phase_spread_deg: Judged,
+}
+
 /// All tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
@@ -141,4 +190,8 @@ pub struct Figures {
     pub backlash: Vec<MoveRow>,
     /// Slow feeds.
     pub creep: Vec<CreepRow>,
+    /// The carriage before and after compensation, with 3 d of backlash outside the loop.
+    pub carriage: Vec<CarriageRow>,
+    /// Threads of 2 mm.
+    pub threads: Vec<Threads>,
 }

@@ -4,15 +4,17 @@ use leadscrew::encoder_map::EncoderMap;
 use leadscrew_hal_mock::encoder::EncoderModel;
 
 use super::axis::Rig;
+use super::carriage::carriage;
 use super::error::TrackingError;
 use super::figures::{CreepRow, Figures, Judged, MoveRow, PeerGains, PeerRow};
 use super::linuxcnc::PidParams;
 use super::linuxcnc::bench::Bench;
 use super::linuxcnc::margins::Margins;
 use super::linuxcnc::tunings::{Reference, Tuning, tunings};
+use super::ours::tuned_on;
 use super::scene::{MOVE_MM, Scene};
+use super::threads::threads;
 use super::trace::{MoveFigures, Trace};
-use super::tuned::tuned;
 use crate::calibration::{Procedure, learn_simulated};
 use crate::parallel;
 
@@ -86,7 +88,7 @@ fn on_all<R: Send>(
 
 /// Our axis there and back on a scene.
 fn there_and_back(scene: &Scene, seed: u64, map: EncoderMap<'_>) -> Result<Trace, TrackingError> {
-    let params = tuned(&scene.nominal)?;
+    let (params, _) = tuned_on(&scene.nominal)?;
     Rig::new(&params, &scene.machine(), seed, map)?.there_and_back(MOVE_MM, scene.feed_mm_per_min)
 }
 
@@ -114,6 +116,8 @@ pub fn figures() -> Result<Figures, TrackingError> {
         peer: peer(&maps, &moves, &tunings)?,
         backlash: backlash(&maps)?,
         creep: creep(&maps)?,
+        carriage: carriage()?,
+        threads: threads()?,
         moves,
     })
 }
@@ -216,7 +220,7 @@ fn creep(maps: &Maps) -> Result<Vec<CreepRow>, TrackingError> {
     let mut rows = Vec::new();
     for feed in CREEP_MM_PER_MIN {
         let done = on_all(&scenes, maps, |scene, seed, map| {
-            let params = tuned(&scene.nominal)?;
+            let (params, _) = tuned_on(&scene.nominal)?;
             let way = CREEP_MM.copysign(feed);
             let trace = Rig::new(&params, &scene.machine(), seed, map)?.feed(way, feed.abs())?;
             Ok(CreepErrors::of(&trace))

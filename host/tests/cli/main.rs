@@ -20,6 +20,7 @@ mod sigrok;
 mod sim;
 mod sim_usage;
 mod table;
+mod tracking;
 mod tune_filter;
 
 use std::ffi::OsStr;

@@ -33,6 +33,7 @@
 mod classes;
 mod config;
 mod design;
+mod linear;
 mod motion;
 mod params;
 mod per_tick;
@@ -41,6 +42,7 @@ mod sight;
 mod supervisor;
 
 pub use config::Config;
+pub use linear::Linear;
 pub use params::ObserverParams;
 
 use self::motion::Motion;

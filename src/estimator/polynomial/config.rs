@@ -27,6 +27,11 @@ pub const MIN_SAMPLES: usize = 4;
 pub const WIDEST_TICKS: f64 = 64.0;
 
 impl Config {
+    /// Whether position and velocity are those of now.
+    pub(crate) fn answers_newest(&self) -> bool {
+        self.answer == Answer::Newest
+    }
+
     /// A fit over the last `window` ticks that answers for `answer`. At low speed it widens up to
     /// 64 ticks; without an edge for 250 ticks the axis is at rest.
     ///

@@ -16,37 +16,39 @@ use crate::tracking::trace::MoveFigures;
 
 /// Tuned for the full nominal machine, [`Manner::WithMargins`].
 pub const WITH_MARGINS: PidParams = PidParams {
-    p: 43.0,
-    i: 800.0,
-    d: 1.33,
-    ff1: 0.968,
-    ff2: 0.0143,
-    bias: 3610.0,
+    p: 35.6,
+    i: 688.0,
+    d: 1.52,
+    ff1: 0.97,
+    ff2: 0.0147,
+    bias: 3440.0,
     deadband: 0.6,
     ..NONE
 };
 
 /// Tuned for the full nominal machine, [`Manner::ToTheEdge`].
 pub const TO_THE_EDGE: PidParams = PidParams {
-    p: 80.4,
-    i: 3510.0,
-    d: 3.41,
-    ff1: 0.985,
-    ff2: 0.0128,
-    bias: 2750.0,
+    p: 101.0,
+    i: 1720.0,
+    d: 2.48,
+    ff1: 1.0,
+    ff2: 0.0143,
+    bias: 2610.0,
+    deadband: 0.6,
     ..NONE
 };
 
 /// Tuned for the worst of the full nominal machine and both off nominal, [`Manner::EveryGain`]: by one who knows
 /// them all.
 pub const FOR_ALL: PidParams = PidParams {
-    p: 79.2,
-    i: 2820.0,
-    d: 1.88,
+    p: 84.6,
+    i: 3180.0,
+    d: 2.13,
     ff1: 1.0,
-    ff2: 0.0189,
-    ff3: 0.000_272,
-    bias: 6170.0,
+    ff2: 0.019,
+    ff3: 0.00035,
+    bias: 340.0,
+    deadband: 0.6,
     ..NONE
 };
 

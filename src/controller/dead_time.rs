@@ -1,0 +1,103 @@
+//! Dead time of the drive at a reversal of its command: what it does not answer is given back afterwards.
+//!
+//! A thyristor drive stands for some milliseconds when the sign of its command changes, until the current of the other
+//! bridge may flow. What was commanded meanwhile, friction apart, would have moved the axis; it is added up and, once
+//! the drive answers again, given back by an eighth of the rest in each tick, so that the axis is where the
+//! feedforward meant it to be without an error that feedback would have to see first. Only a setpoint
+//! that moves is given back; at rest nothing is owed.
+
+use crate::units::{Command, RangeError, checked};
+
+/// Quantised dead time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Config {
+    /// 0: none.
+    ticks: u32,
+    /// Command that the drive takes for zero, Q.30.
+    zero: i32,
+    /// Least command either side of it that has a sign, Q.30.
+    least: u32,
+}
+
+impl Config {
+    /// A dead time of `ticks` where the sign of the command against `zero` changes, a command within `least` of it having
+    /// none; fractions of full command.
+    ///
+    /// # Errors
+    /// [`RangeError`] for more than 100 ticks, or commands that are none.
+    pub fn new(ticks: f64, zero: f64, least: f64) -> Result<Self, RangeError> {
+        let fixed = |value: f64| libm::ldexp(value, Command::FRAC_NBITS.cast_signed()) as i32;
+        Ok(Self {
+            ticks: libm::round(checked("dead_time_ticks", ticks, 0.0, 100.0)?) as u32,
+            zero: fixed(checked("bias", zero, -1.0, 1.0)?),
+            least: fixed(checked("dead_time_least", least, 0.0, 0.1)?).unsigned_abs(),
+        })
+    }
+
+    /// There is something to do.
+    #[inline]
+    #[must_use]
+    pub const fn is_on(&self) -> bool {
+        self.ticks != 0
+    }
+}
+
+/// Part of what is owed that a tick gives back: 2⁻ⁿ.
+const SHARE: u32 = 3;
+/// Most that is owed, full commands: 64.
+const MOST: i64 = 64 << Command::FRAC_NBITS;
+
+/// What the drive still owes.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    /// Sign of the last command that had one.
+    sign: i32,
+    /// Ticks that the drive will stand for.
+    left: u32,
+    /// Q.30.
+    owed: i64,
+}
+
+impl State {
+    /// Nothing owed, no sign known.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            sign: 0,
+            left: 0,
+            owed: 0,
+        }
+    }
+
+    /// `law`, Q.30, with what is given back in this tick; `friction` is the part of it that moves nothing.
+    #[inline]
+    pub fn step(&mut self, config: &Config, law: i64, friction: i32, resting: bool) -> i64 {
+        let net = law.wrapping_sub(i64::from(config.zero));
+        let has_sign = net.unsigned_abs() > u64::from(config.least);
+        let sign = if net < 0 { -1 } else { 1 };
+        if has_sign && sign != self.sign {
+            // The first sign is no reversal.
+            if self.sign != 0 {
+                self.left = config.ticks;
+            }
+            self.sign = sign;
+        }
+        if resting {
+            self.owed = 0;
+            self.left = self.left.saturating_sub(1);
+            return law;
+        }
+        if self.left > 0 {
+            self.left = self.left.wrapping_sub(1);
+            let lost = net.wrapping_sub(i64::from(friction));
+            self.owed = self
+                .owed
+                .wrapping_add(lost)
+                .clamp(MOST.wrapping_neg(), MOST);
+            return law;
+        }
+        let share = self.owed.wrapping_shr(SHARE);
+        self.owed = self.owed.wrapping_sub(share);
+        law.wrapping_add(share)
+    }
+}
