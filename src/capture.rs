@@ -93,6 +93,13 @@ impl<'a> Observation<'a> {
         self.capture.edges
     }
 
+    /// True if the index pulse came in this tick.
+    #[inline]
+    #[must_use]
+    pub const fn has_index(&self) -> bool {
+        self.capture.index.is_some()
+    }
+
     /// The index pulse, if it came in this tick.
     #[must_use]
     pub fn index(&self) -> Option<UnwrappedLatch> {

@@ -5,6 +5,8 @@ use crate::units::Command;
 
 /// Bit of [`Record::flags`]: the axis is enabled.
 const ENABLED: u32 = 1;
+/// Bit of [`Record::flags`]: the brake is to be released.
+const BRAKE_RELEASED: u32 = 1 << 5;
 
 /// One tick, in the bits of the formats in [`crate::units`]; 52 bytes on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,6 +72,24 @@ impl Record {
     #[must_use]
     pub const fn drive(&self) -> (Command, bool) {
         (Command::from_bits(self.command), self.flags & ENABLED != 0)
+    }
+
+    /// The number of the [`State`](crate::supervisor::State).
+    #[must_use]
+    pub const fn state(&self) -> u8 {
+        self.flags.to_le_bytes()[1]
+    }
+
+    /// What was put out in this tick, for whoever moves a machine by it: command, enable and brake.
+    #[must_use]
+    pub fn put_out(&self) -> Outputs {
+        let (command, enabled) = self.drive();
+        Outputs {
+            command,
+            enabled,
+            brake_released: self.flags & BRAKE_RELEASED != 0,
+            ..Outputs::default()
+        }
     }
 
     /// The record as little-endian bytes, fields in order.

@@ -2,7 +2,7 @@
 
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::{MoveAndBack, Simulation};
+use leadscrew_hal_mock::scenario::{BUILT_IN, MoveAndBack, Runner, Simulation};
 use leadscrew_qemu::{Run, build};
 
 /// Runs of the firmware at each rate.
@@ -63,4 +63,28 @@ fn the_standard_move_at_2500_hz_is_that_of_the_host() {
 fn estimation_from_edge_times_is_that_of_the_host() {
     the_same_in_qemu(1000, "polynomial", 1);
     the_same_in_qemu(1000, "observer", 1);
+}
+
+#[test]
+#[ignore = "needs QEMU; run by cargo xtask test"]
+fn scenarios_are_those_of_the_host() {
+    for (name, scenario) in BUILT_IN {
+        let mut runner = Runner::new(scenario).unwrap();
+        let mut refused = 0;
+        while runner
+            .step(|happening| refused += u32::from(happening.refused.is_some()))
+            .is_some()
+        {}
+        assert_eq!((refused, runner.violation()), (0, None), "{name}");
+        let expected = format!(
+            "digest {:016x} of {} ticks",
+            runner.digest(),
+            runner.ticks()
+        );
+        let run = Run::new(build("axis", "firmware").unwrap()).arg(format!("scenario={name}"));
+        let output = run.run().unwrap();
+        assert_eq!(output.exit_code, 0, "{output}");
+        let found = output.log_lines.iter().any(|line| line.message == expected);
+        assert!(found, "expected `{expected}` in\n{output}");
+    }
 }

@@ -4,11 +4,13 @@ mod experiment;
 mod io;
 mod planned;
 mod reconfigure;
+mod request;
 mod requests;
 
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
+pub use request::{Refused, Request};
 
 use crate::capture::{CaptureHealth, Observation, Unwrapper};
 use crate::compensation::{Compensation, ScrewTable, TableRefused};
@@ -284,6 +286,9 @@ impl<'m> Axis<'m> {
     pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
         if self.outputs.enabled && self.outputs.moving {
             ReconfigureError::check(&self.config, &config)?;
+        }
+        if self.sources.is_tied() && config.sources != self.config.sources {
+            return Err(ReconfigureError::Sources);
         }
         self.edges.reconfigure(config.edges);
         if config.estimators != self.config.estimators {

@@ -13,7 +13,7 @@ pub enum ReconfigureError {
     EdgeTimer,
     /// Which estimators there are and which paths they serve: the fed back position would jump.
     Estimators,
-    /// Ratios and the second encoder: what is followed would jump.
+    /// Ratios, the second encoder or the limits of what follows them: the setpoint would jump.
     Sources,
 }
 
@@ -29,8 +29,6 @@ impl ReconfigureError {
             Err(Self::EdgeTimer)
         } else if now.estimators.differs_in_kind(&next.estimators) {
             Err(Self::Estimators)
-        } else if now.sources != next.sources {
-            Err(Self::Sources)
         } else {
             Ok(())
         }
@@ -43,7 +41,7 @@ impl fmt::Display for ReconfigureError {
             Self::Scale => "counts_per_mm and tick_hz",
             Self::EdgeTimer => "timer_hz",
             Self::Estimators => "the estimators and their paths",
-            Self::Sources => "the sources of setpoints",
+            Self::Sources => "sources of setpoints and the limits of motion",
         };
         write!(
             f,

@@ -15,6 +15,9 @@ impl Axis<'_> {
     /// # Errors
     /// [`SelectError`] while the axis moves or a gear is engaged; what is followed stays.
     pub fn select(&mut self, source: Source) -> Result<(), SelectError> {
+        if self.outputs.moving {
+            return Err(SelectError::Moving);
+        }
         self.sources.select(source)
     }
 
@@ -29,7 +32,7 @@ impl Axis<'_> {
     /// # Errors
     /// [`GearError`]; the gear stays as it is.
     pub fn engage_gear(&mut self, engaged: bool) -> Result<(), GearError> {
-        if !self.outputs.enabled {
+        if !self.supervisor.is_following() {
             return Err(GearError::Disabled);
         }
         self.sources.engage(engaged)
@@ -41,16 +44,21 @@ impl Axis<'_> {
         self.sources.gear()
     }
 
-    /// Plans a pass of a thread by the spindle as it turns now, and begins to go to its start.
+    /// Plans a pass of a thread by the spindle as it turns now, and begins to go to its start. Its positions count from the
+    /// origin, from 0 d where none is known.
     ///
     /// # Errors
     /// [`ThreadRefusal`] with its figures; nothing moves then.
     pub fn arm_thread(&mut self, order: &ThreadOrder) -> Result<ThreadFigures, ThreadRefusal> {
-        if !self.outputs.enabled {
+        if !self.supervisor.is_following() {
             return Err(ThreadRefusal::Disabled);
         }
+        if self.outputs.moving {
+            return Err(ThreadRefusal::Moving);
+        }
+        let origin = self.homing.origin().unwrap_or(Position::ZERO);
         let now = self.tick.wrapping_sub(1);
-        self.sources.arm_thread(order, Position::ZERO, now)
+        self.sources.arm_thread(order, origin, now)
     }
 
     /// How far a pass of a thread has come.

@@ -196,6 +196,10 @@ impl<'m> Compensation<'m> {
     /// The setpoint of the encoder that brings the carriage to `commanded`.
     #[inline]
     pub fn step(&mut self, commanded: &Setpoint) -> Setpoint {
+        // Not used, and what was once in force is out of it: the axis pays nothing.
+        if !self.config.is_used && (self.first | self.second | i64::from(self.velocity)) == 0 {
+            return *commanded;
+        }
         let position = commanded.position.to_bits();
         self.follow_heading(position as i32);
         // The saturated product of a velocity within ±2¹¹ d/tick and at most 2¹³ ticks.

@@ -177,6 +177,14 @@ impl<'m> ScrewTable<'m> {
 }
 
 impl Stretch {
+    /// A stretch of no length: what memory for a table begins as.
+    pub const EMPTY: Self = Self {
+        from: 0,
+        length: 0,
+        values: [0; 2],
+        slopes: [0; 2],
+    };
+
     /// With its steepest slope and its length, d.
     fn between(
         point: usize,

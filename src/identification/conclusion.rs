@@ -9,8 +9,10 @@ use super::recorder::Records;
 use super::seed;
 use crate::units::AxisScale;
 
-/// Dead time to begin with, s of a natural period.
-const FIRST_DEAD_TIME: f64 = 0.03;
+/// Dead times to begin with, of a natural period.
+const DEAD_TIMES: [f64; 4] = [0.0, 0.03, 0.06, 0.15];
+/// Limits of acceleration to begin with, of the largest acceleration without one.
+const LIMIT_SHARES: [f64; 7] = [0.95, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2];
 /// A limit of acceleration must explain that share of the squares that are left without it.
 const LIMIT_EXPLAINS: f64 = 0.05;
 /// Steps of command of common drives, of full command: what a ramp cannot tell apart.
@@ -30,44 +32,60 @@ pub struct Evidence<'r> {
 }
 
 impl Evidence<'_> {
-    /// The model in records, and static friction as the aim that breaks away.
-    pub fn solve(&self) -> Option<(Fit, [f64; 2])> {
-        let mut start = converted(&self.probe, 1, self.decimation);
-        let period = core::f64::consts::TAU / libm::exp(part(&start, place::LN_OMEGA));
-        set(&mut start, place::DEAD_TIME, |_| FIRST_DEAD_TIME * period);
-        let fit = self.with_or_without_limit(&start)?;
-        let held = self.held(&fit.vector);
-        let fit = self.problem(&fit.vector, held).solve(&fit.vector)?;
+    /// The model in records, and static friction as the aim that breaks away, none where nothing holds the axis.
+    pub fn solve(&self) -> Option<(Fit, Option<[f64; 2]>)> {
+        let start = converted(&self.probe, 1, self.decimation);
+        let free = self.solved(&start, None);
+        let held = self.held(&start);
+        let Some(held) = held else {
+            return Some((free?, None));
+        };
+        let stuck = self.solved(&start, Some(held));
+        let Some(stuck) = stuck else {
+            return Some((free?, None));
+        };
+        if free.is_some_and(|free| free.cost < stuck.cost) {
+            return Some((free?, None));
+        }
+        // What breaks the axis away was judged by a rougher model.
+        let held = self.held(&stuck.vector);
+        let fit = self.problem(&stuck.vector, held).solve(&stuck.vector)?;
         Some((fit, held))
     }
 
     /// The better of a drive with a limit of acceleration and one without.
-    fn with_or_without_limit(&self, start: &Vector) -> Option<Fit> {
-        let held = self.held(start);
-        let problem = self.problem(start, held);
-        let without = problem.solve(start)?;
-        let mut best = without;
-        for share in [0.9, 0.6] {
-            let mut limited = *start;
-            set(&mut limited, place::MAX_ACCELERATION, |_| {
-                share * without.peak_acceleration
-            });
-            let Some(fit) = self.problem(&limited, held).solve(&limited) else {
-                continue;
-            };
-            let limit = part(&fit.vector, place::MAX_ACCELERATION);
-            let explains = fit.cost < best.cost.min((1.0 - LIMIT_EXPLAINS) * without.cost);
-            if explains && fit.peak_acceleration >= 0.999 * limit {
-                best = fit;
+    fn solved(&self, start: &Vector, held: Option<[f64; 2]>) -> Option<Fit> {
+        let mut start = *start;
+        let period = core::f64::consts::TAU / libm::exp(part(&start, place::LN_OMEGA));
+        let unlimited = self.problem(&start, held);
+        let peak = unlimited.peak_acceleration(&start);
+        let mut least = f64::MAX;
+        let mut nearest = start;
+        for share in LIMIT_SHARES {
+            for dead in DEAD_TIMES {
+                set(&mut start, place::DEAD_TIME, |_| dead * period);
+                set(&mut start, place::MAX_ACCELERATION, |_| share * peak);
+                let cost = unlimited.cost(&start);
+                if cost < least {
+                    (least, nearest) = (cost, start);
+                }
             }
         }
-        Some(best)
+        let limited = self.problem(&nearest, held).solve(&nearest);
+        set(&mut nearest, place::MAX_ACCELERATION, |_| NO_LIMIT);
+        let without = unlimited.solve(&nearest);
+        let (Some(limited), Some(without)) = (limited, without) else {
+            return limited.or(without);
+        };
+        let limit = part(&limited.vector, place::MAX_ACCELERATION);
+        let explains = limited.cost < (1.0 - LIMIT_EXPLAINS) * without.cost;
+        let reached = explains && limited.peak_acceleration >= 0.999 * limit;
+        Some(if reached { limited } else { without })
     }
 
-    fn problem(&self, vector: &Vector, held: [f64; 2]) -> Problem<'_> {
+    fn problem(&self, vector: &Vector, held: Option<[f64; 2]>) -> Problem<'_> {
         let friction = part(vector, place::FRICTION);
-        let [forward, backward] = held;
-        let excess = forward.min(backward) - friction;
+        let excess = held.map_or(0.0, |[forward, backward]| forward.min(backward) - friction);
         let gain = part(vector, place::GAIN);
         let limited = part(vector, place::MAX_ACCELERATION) < NO_LIMIT;
         let stribeck = excess > 0.1 * friction && excess > 5e-4 * gain;
@@ -80,26 +98,24 @@ impl Evidence<'_> {
     }
 
     /// Static friction of a drive with that vector (records) which breaks away when this one did.
-    fn held(&self, vector: &Vector) -> [f64; 2] {
+    fn held(&self, vector: &Vector) -> Option<[f64; 2]> {
         let ticks = converted(vector, self.decimation, 1);
-        let rough = seed::held(
-            part(&ticks, place::GAIN),
-            part(&ticks, place::DRIFT),
-            self.break_command,
-        );
-        let [forward, backward] = rough;
+        let (gain, drift) = (part(&ticks, place::GAIN), part(&ticks, place::DRIFT));
+        let [forward, backward] = seed::held(gain, drift, self.break_command)?;
         let [broke_forward, broke_backward] = self.broke;
         let records = f64::from(self.decimation);
         let forward = exact(&ticks, forward, broke_forward, 1.0);
         let backward = exact(&ticks, backward, broke_backward, -1.0);
-        [forward * records, backward * records]
+        // Below the kinetic friction it makes no difference.
+        let kinetic = part(&ticks, place::FRICTION);
+        Some([forward, backward].map(|aim| aim.max(kinetic) * records))
     }
 
     /// The figures, in d, ticks and s.
     pub fn identified(
         &self,
         fit: &Fit,
-        held: [f64; 2],
+        held: Option<[f64; 2]>,
         scale: AxisScale,
         proof_level: f64,
     ) -> Identified {
@@ -123,14 +139,14 @@ impl Evidence<'_> {
         // Of the first order in both.
         let offset_sigma = combined(fit, [-offset, 1.0, 0.0], 1.0).sigma / at(gain);
         let speed = at(place::GAIN) / n;
-        let aim = |broke: Option<Broke>, held: f64| {
-            broke.map(|broke| Figure {
-                value: held / n,
-                sigma: speed * (BREAK_TICKS * broke.slope + COMMAND_STEP / 2.0),
+        let aim = |broke: Option<Broke>, held: Option<f64>| {
+            Some(Figure {
+                value: held? / n,
+                sigma: speed * (BREAK_TICKS * broke?.slope + COMMAND_STEP / 2.0),
             })
         };
-        let [forward, backward] = held;
         let [broke_forward, broke_backward] = self.broke;
+        let (forward, backward) = (held.map(|[aim, _]| aim), held.map(|[_, aim]| aim));
         let limit = at(place::MAX_ACCELERATION);
         let has_stribeck = sigma(place::LN_STRIBECK) > 0.0;
         Identified {
@@ -186,7 +202,7 @@ fn exact(ticks: &Vector, rough: f64, broke: Option<Broke>, sign: f64) -> f64 {
         return rough;
     };
     let most = broke.ticks.saturating_mul(2).saturating_add(100);
-    let after = |held: f64| broken_away_after(ticks, [held; 2], sign * broke.slope, most);
+    let after = |held: f64| broken_away_after(ticks, held, sign * broke.slope, most);
     let (mut low, mut high) = (0.0, 2.0 * rough + 0.1);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);

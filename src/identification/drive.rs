@@ -81,6 +81,7 @@ pub struct Drive {
     max_acceleration: f64,
     /// Static friction, as the aim that breaks away, forward and backward.
     held: [f64; 2],
+    sticks: bool,
     per_stribeck: f64,
     dead_time: f64,
     delay_whole: isize,
@@ -92,13 +93,15 @@ pub struct Drive {
     /// Direction of the last command that had one, and records since it changed.
     direction: f64,
     since_reversal: f64,
+    /// Share of the last record in which the drive answered.
+    alive: f64,
 }
 
 impl Drive {
     /// A drive that stands, or drifts where nothing holds it; `held` is static friction as the aim that breaks
-    /// away (forward, backward), never below the kinetic one.
+    /// away (forward, backward), never below the kinetic one, or none if nothing holds it at rest.
     #[must_use]
-    pub fn new(vector: &Vector, held: [f64; 2]) -> Self {
+    pub fn new(vector: &Vector, held: Option<[f64; 2]>) -> Self {
         let [
             gain,
             drift,
@@ -121,12 +124,14 @@ impl Drive {
             kept: (1.0 - damping - stiffness) / all,
             pull: 4.0 * stiffness / all,
             max_acceleration,
-            held: held.map(|aim| aim.max(friction)),
+            held: held.map_or([friction; 2], |aims| aims.map(|aim| aim.max(friction))),
+            sticks: held.is_some(),
             per_stribeck: libm::exp(-ln_stribeck),
             dead_time,
             delay_whole: whole as isize,
             delay_part: delay - whole,
             since_reversal: 1e6,
+            alive: 1.0,
             ..Self::default()
         };
         if libm::fabs(drift) > gain * NO_DIRECTION {
@@ -150,7 +155,7 @@ impl Drive {
     fn holds(&self, aim: f64) -> bool {
         let [forward, backward] = self.held;
         let held = if aim < 0.0 { backward } else { forward };
-        libm::fabs(aim) <= held
+        self.sticks && libm::fabs(aim) <= held
     }
 
     fn friction_at(&self, velocity: f64) -> f64 {
@@ -160,18 +165,41 @@ impl Drive {
         self.friction + (held - self.friction) / (1.0 + relative * relative)
     }
 
-    /// Moves through record `index` of commands.
+    /// Moves through record `index` of commands: for its first part still under the command before the one that is due.
     pub fn step(&mut self, command: impl Fn(isize) -> f64, index: isize) {
         let due = index.wrapping_sub(self.delay_whole);
-        let later = command(due);
-        let delayed = later + self.delay_part * (command(due.wrapping_sub(1)) - later);
-        self.drive(delayed);
+        let part = self.delay_part;
+        let aim = self.gain * command(due) + self.drift;
+        let before = self.gain * command(due.wrapping_sub(1)) + self.drift;
+        let was_alive = self.alive;
+        let reverses = self.reverses(aim);
+        if reverses {
+            self.since_reversal = 0.0;
+        }
+        let dead_until = part + self.dead_time;
+        self.alive = (self.since_reversal + 1.0 - dead_until).clamp(0.0, 1.0);
+        self.since_reversal += 1.0;
+        let mean = if reverses {
+            part * before * was_alive + self.alive * aim
+        } else {
+            (aim + part * (before - aim)) * self.alive
+        };
+        self.drive(mean);
     }
 
-    /// Moves through a record under a command that has had its delay.
-    fn drive(&mut self, command: f64) {
-        let aim = self.gain * command + self.drift;
-        let aim = aim * self.alive(aim);
+    /// Notes the direction of a command; true where it changes.
+    fn reverses(&mut self, aim: f64) -> bool {
+        if libm::fabs(aim) <= self.gain * NO_DIRECTION {
+            return false;
+        }
+        let direction = libm::copysign(1.0, aim);
+        let reverses = direction * self.direction < 0.0;
+        self.direction = direction;
+        reverses
+    }
+
+    /// Moves through a record at that mean aim.
+    fn drive(&mut self, aim: f64) {
         let (velocity, acceleration) = (self.velocity, self.acceleration);
         let stops = velocity == 0.0 || (velocity + acceleration) * velocity <= 0.0;
         if stops && self.holds(aim) {
@@ -189,20 +217,6 @@ impl Drive {
         self.travel += velocity + acceleration / 3.0 + next / 6.0;
         self.velocity += 0.5 * (acceleration + next);
         self.acceleration = next;
-    }
-
-    /// Share of the record in which a drive that reversed answers.
-    fn alive(&mut self, aim: f64) -> f64 {
-        if libm::fabs(aim) > self.gain * NO_DIRECTION {
-            let direction = libm::copysign(1.0, aim);
-            if direction * self.direction < 0.0 {
-                self.since_reversal = 0.0;
-            }
-            self.direction = direction;
-        }
-        let alive = (self.since_reversal + 1.0 - self.dead_time).clamp(0.0, 1.0);
-        self.since_reversal += 1.0;
-        alive
     }
 
     /// Acceleration at the end of the last record, d a record².

@@ -131,7 +131,10 @@ impl Experiment {
             self.ending = self.trouble(seen);
         }
         if self.ending.is_none() {
-            self.advance(observation.count);
+            let aligned = self.ticks.checked_rem(self.program.aligned_to);
+            if aligned == Some(0) {
+                self.advance(observation.count);
+            }
         }
         self.ticks = self.ticks.saturating_add(1);
         let limit = self.program.bounds.command.to_bits();

@@ -1,11 +1,13 @@
 //! Least squares of a drive's motion under the recorded commands against the recorded motion.
 //!
-//! The output error is that of position: each chunk of the record begins at rest, where the model begins anew, and
-//! the place it begins at is free (the mean of its errors is taken out). Gauss–Newton with Levenberg's damping;
+//! The output error is that of position, chunk by chunk, each from a rest to the next one: the place where a chunk
+//! begins is free (the mean of its errors is taken out), so that what an encoder adds to a whole motion does not count. Gauss–Newton with Levenberg's damping;
 //! derivatives come from drives that run beside the first one, each with one parameter moved.
 //!
-//! The covariance is the sandwich H⁻¹·(Σ s·sᵀ)·H⁻¹ over the scores s of whole clusters of records: errors of an encoder
-//! and of a drive are not white, and what repeats within a cluster counts once.
+//! The covariance is the larger of two that do not take errors as white, since those of an encoder and of a drive are
+//! not: the sandwich H⁻¹·(Σ s·sᵀ)·H⁻¹ over the scores s of clusters of a period and a half, and the jackknife over the
+//! chunks, which is how far the solution would move without each of them. To it comes what long waves of the encoder
+//! could do, over which every chunk passes alike.
 
 use super::drive::{Drive, NO_LIMIT, PARAMETERS, Vector, place};
 use super::matrix::{Matrix, part, set};
@@ -26,8 +28,8 @@ pub struct Problem<'r> {
     pub records: Records<'r>,
     /// Parameters that are looked for.
     pub free: Free,
-    /// Static friction, as the aim that breaks away, forward and backward.
-    pub held: [f64; 2],
+    /// Static friction, as the aim that breaks away, forward and backward; none if nothing holds the axis.
+    pub held: Option<[f64; 2]>,
     /// What ln of the Stribeck speed is thought to be, within a factor e; data seldom say much of it.
     pub ln_stribeck: f64,
 }
@@ -80,15 +82,30 @@ impl Sums {
     }
 }
 
+impl Sums {
+    /// Products and weighted slopes about their means.
+    fn centred(&self) -> (Matrix, Vector) {
+        let count = self.count.max(1.0);
+        let mut products = self.products;
+        products.add_product(&self.slopes, &self.slopes, -1.0 / count);
+        let mut weighted = self.weighted;
+        for (sum, slope) in weighted.iter_mut().zip(&self.slopes) {
+            *sum -= slope * self.error / count;
+        }
+        (products, weighted)
+    }
+}
+
 impl Problem<'_> {
     /// The best parameters from `start` on; none if the data do not determine them.
     #[must_use]
     pub fn solve(&self, start: &Vector) -> Option<Fit> {
-        let mut vector = bounded(start);
+        let mut vector = self.bounded(start);
         let mut damping = 1e-3;
         let mut cost = self.cost(&vector);
         for _ in 0..ITERATIONS {
-            let (normal, gradient) = self.normal(&vector, cost);
+            let (mut normal, mut gradient) = self.normal(&vector, cost);
+            self.hold_at_bounds(&vector, &mut normal, &mut gradient);
             let before = cost;
             let mut improved = false;
             for _ in 0..8 {
@@ -101,7 +118,7 @@ impl Problem<'_> {
                 for (value, step) in trial.iter_mut().zip(&step) {
                     *value += step;
                 }
-                let trial = bounded(&trial);
+                let trial = self.bounded(&trial);
                 let trial_cost = self.cost(&trial);
                 if trial_cost < cost {
                     (vector, cost) = (trial, trial_cost);
@@ -122,9 +139,10 @@ impl Problem<'_> {
     #[must_use]
     pub fn cost(&self, vector: &Vector) -> f64 {
         let mut cost = 0.0;
+        let mut drive = [self.drive(vector)];
         for chunk in self.chunks() {
             let (mut count, mut sum, mut square) = (0.0, 0.0, 0.0);
-            self.run(chunk, &mut [self.drive(vector, chunk)], |error, _| {
+            self.run(chunk, &mut drive, |error, _| {
                 count += 1.0;
                 sum += error;
                 square += error * error;
@@ -134,21 +152,31 @@ impl Problem<'_> {
         if cost.is_finite() { cost } else { f64::MAX }
     }
 
+    /// Largest acceleration of a drive with that vector, d a record².
+    #[must_use]
+    pub fn peak_acceleration(&self, vector: &Vector) -> f64 {
+        let mut peak = 0.0_f64;
+        let mut drive = [self.drive(vector)];
+        for chunk in self.chunks() {
+            self.run(chunk, &mut drive, |_, drives| {
+                for drive in drives {
+                    peak = peak.max(libm::fabs(drive.acceleration()));
+                }
+            });
+        }
+        peak
+    }
+
     /// Normal equations at a vector: H and the right-hand side.
     fn normal(&self, vector: &Vector, cost: f64) -> (Matrix, Vector) {
         let mut normal = Matrix::ZERO;
         let mut gradient = [0.0; PARAMETERS];
+        let mut drives = self.drives(vector);
         for chunk in self.chunks() {
-            let sums = self.sums(vector, chunk);
-            for i in 0..PARAMETERS {
-                let mean = part(&sums.slopes, i) / sums.count.max(1.0);
-                set(&mut gradient, i, |g| {
-                    g + part(&sums.weighted, i) - mean * sums.error
-                });
-                for j in 0..PARAMETERS {
-                    let centred = sums.products.at(i, j) - mean * part(&sums.slopes, j);
-                    normal.set(i, j, normal.at(i, j) + centred);
-                }
+            let (products, weighted) = self.sums(vector, chunk, &mut drives).centred();
+            normal.add(&products, 1.0);
+            for (sum, part) in gradient.iter_mut().zip(&weighted) {
+                *sum += part;
             }
         }
         let i = place::LN_STRIBECK;
@@ -177,26 +205,33 @@ impl Problem<'_> {
         let (normal, _) = self.normal(&vector, cost);
         let inverse = normal.inverse()?;
         let free = self.free.iter().filter(|free| **free).count() as f64;
-        let mut wide = Clusters::default();
+        let mut wide = Matrix::ZERO;
         let mut narrow = Clusters::default();
-        let mut records = 0.0;
+        let (mut records, mut chunks) = (0.0_f64, 0.0_f64);
         let mut peak = 0.0_f64;
         let length = self.narrow_cluster(&vector);
+        let mut waves = Waves::new(self.records);
+        let (mut drives, mut ahead) = (self.drives(&vector), self.drives(&vector));
         for chunk in self.chunks() {
-            let sums = self.sums(&vector, chunk);
+            let sums = self.sums(&vector, chunk, &mut ahead);
             records += sums.count;
+            chunks += 1.0;
+            // What the solution would move by without this chunk.
+            let (products, weighted) = sums.centred();
+            let mut without = normal;
+            without.add(&products, -1.0);
+            let moved = without.inverse().unwrap_or(inverse).apply(&weighted);
+            wide.add_product(&moved, &moved, 1.0);
             let means = sums.slopes.map(|sum| sum / sums.count.max(1.0));
             let mean_error = sums.error / sums.count.max(1.0);
-            let mut drives = self.drives(&vector, chunk);
             let mut index = 0_usize;
             self.run(chunk, &mut drives, |error, drives| {
-                let slopes = self.slopes(&vector, drives);
-                let mut score = [0.0; PARAMETERS];
-                for (i, place) in score.iter_mut().enumerate() {
-                    *place = (part(&slopes, i) - part(&means, i)) * (error - mean_error);
+                let mut slopes = self.slopes(&vector, drives);
+                for (slope, mean) in slopes.iter_mut().zip(&means) {
+                    *slope -= mean;
                 }
-                wide.add(&score);
-                narrow.add(&score);
+                waves.add(&slopes);
+                narrow.add(&slopes.map(|slope| slope * (error - mean_error)));
                 index = index.wrapping_add(1);
                 if index.is_multiple_of(length) {
                     narrow.end();
@@ -205,26 +240,23 @@ impl Problem<'_> {
                     peak = peak.max(libm::fabs(drive.acceleration()));
                 }
             });
-            wide.end();
             narrow.end();
         }
-        let sandwich = |clusters: &Clusters| {
-            let freedom = (clusters.count - free).max(2.0);
-            let covariance = inverse.times(&clusters.products).times(&inverse);
-            (covariance, clusters.count / freedom)
-        };
-        let (wide, narrow) = (sandwich(&wide), sandwich(&narrow));
-        let mut covariance = Matrix::ZERO;
+        let freedom = narrow.count / (narrow.count - free).max(2.0);
+        let narrow = inverse.times(&narrow.products).times(&inverse);
+        let jackknife = (chunks - 1.0) / chunks.max(1.0);
+        let variance = cost / records.max(1.0);
+        let mut covariance = waves.covariance(&inverse, variance);
         for i in 0..PARAMETERS {
             for j in 0..PARAMETERS {
                 let scale = |k: usize| {
-                    let (of_wide, of_narrow) =
-                        (wide.0.at(k, k) * wide.1, narrow.0.at(k, k) * narrow.1);
-                    let base = narrow.0.at(k, k).max(1e-300);
-                    libm::sqrt(of_wide.max(of_narrow) / base)
+                    let (wide, narrow) = (wide.at(k, k) * jackknife, narrow.at(k, k));
+                    libm::sqrt((narrow * freedom).max(wide) / narrow.max(1e-300))
                 };
-                if part_free(&self.free, i) && part_free(&self.free, j) {
-                    covariance.set(i, j, narrow.0.at(i, j) * scale(i) * scale(j));
+                let of_both = narrow.at(i, j) * scale(i) * scale(j);
+                covariance.set(i, j, covariance.at(i, j) + of_both);
+                if !(part_free(&self.free, i) && part_free(&self.free, j)) {
+                    covariance.set(i, j, 0.0);
                 }
             }
         }
@@ -243,33 +275,30 @@ impl Problem<'_> {
         (1.5 * period).clamp(16.0, 1000.0) as usize
     }
 
-    fn sums(&self, vector: &Vector, chunk: (usize, usize)) -> Sums {
+    fn sums(&self, vector: &Vector, chunk: (usize, usize), drives: &mut [Drive]) -> Sums {
         let mut sums = Sums::ZERO;
-        let mut drives = self.drives(vector, chunk);
-        self.run(chunk, &mut drives, |error, drives| {
+        self.run(chunk, drives, |error, drives| {
             sums.add(error, &self.slopes(vector, drives));
         });
         sums
     }
 
     /// The drive of `vector`, and one for each parameter that is moved by its step.
-    fn drives(&self, vector: &Vector, chunk: (usize, usize)) -> [Drive; PARAMETERS + 1] {
-        let mut drives = [self.drive(vector, chunk); PARAMETERS + 1];
+    fn drives(&self, vector: &Vector) -> [Drive; PARAMETERS + 1] {
+        let mut drives = [self.drive(vector); PARAMETERS + 1];
         for (i, drive) in drives.iter_mut().skip(1).enumerate() {
             if part_free(&self.free, i) {
                 let mut moved = *vector;
                 set(&mut moved, i, |value| value + step(vector, i));
-                *drive = self.drive(&moved, chunk);
+                *drive = self.drive(&moved);
             }
         }
         drives
     }
 
-    fn drive(&self, vector: &Vector, (start, _): (usize, usize)) -> Drive {
-        let before = (0..start).rev().map(|index| self.command(index as isize));
-        let last = before.take(4000).find(|command| *command != 0.0);
-        let direction = last.map_or(0.0, |command| libm::copysign(1.0, command));
-        Drive::new(vector, self.held).last_driven(direction)
+    fn drive(&self, vector: &Vector) -> Drive {
+        // Whatever ran before the records ended with a pulse backward.
+        Drive::new(vector, self.held).last_driven(-1.0)
     }
 
     /// Slopes of the travel.
@@ -292,6 +321,9 @@ impl Problem<'_> {
         mut see: impl FnMut(f64, &[Drive]),
     ) {
         let mut travel = 0.0;
+        for drive in &mut *drives {
+            drive.travel = 0.0;
+        }
         for index in start..end {
             let Some(record) = self.records.get(index) else {
                 return;
@@ -336,10 +368,11 @@ impl Problem<'_> {
 
     /// Errors of a solution record by record, d: measured and modelled travel within its chunk.
     pub fn trace(&self, vector: &Vector, mut see: impl FnMut(usize, f64, f64, f64)) {
+        let mut drive = [self.drive(vector)];
         for chunk in self.chunks() {
             let mut index = chunk.0;
             let mut last = 0.0;
-            self.run(chunk, &mut [self.drive(vector, chunk)], |error, drives| {
+            self.run(chunk, &mut drive, |error, drives| {
                 let drive = drives.first().copied().unwrap_or_default();
                 let travel = drive.travel + error;
                 see(index, travel - last, drive.velocity(), error);
@@ -387,6 +420,64 @@ impl Clusters {
     }
 }
 
+/// Lengths of the waves of an encoder that are thought of, of the travel.
+const WAVES: [f64; 4] = [0.35, 0.7, 1.4, 2.8];
+
+/// An encoder has two long waves: one a revolution from its eccentricity, and the second harmonic.
+const SHARE_OF_WAVES: f64 = 2.0 / WAVES.len() as f64;
+
+/// What long waves of the encoder do to the parameters. Every chunk passes over the same ones, so neither clusters nor
+/// chunks show them; they are taken to have the variance of the errors that are left.
+struct Waves<'r> {
+    records: Records<'r>,
+    index: usize,
+    position: f64,
+    length: f64,
+    scores: [[Vector; 2]; WAVES.len()],
+}
+
+impl<'r> Waves<'r> {
+    fn new(records: Records<'r>) -> Self {
+        let (mut position, mut low, mut high) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for record in records.iter() {
+            position += record.travel_d;
+            low = low.min(position);
+            high = high.max(position);
+        }
+        Self {
+            records,
+            index: 0,
+            position: 0.0,
+            length: (high - low).max(1.0),
+            scores: [[[0.0; PARAMETERS]; 2]; WAVES.len()],
+        }
+    }
+
+    /// Takes the slopes of the next record.
+    fn add(&mut self, slopes: &Vector) {
+        let record = self.records.get(self.index).unwrap_or_default();
+        self.position += record.travel_d;
+        self.index = self.index.wrapping_add(1);
+        for (share, [sine, cosine]) in WAVES.iter().zip(&mut self.scores) {
+            let angle = core::f64::consts::TAU * self.position / (share * self.length);
+            let (s, c) = libm::sincos(angle);
+            for ((sine, cosine), slope) in sine.iter_mut().zip(cosine).zip(slopes) {
+                *sine += s * slope;
+                *cosine += c * slope;
+            }
+        }
+    }
+
+    fn covariance(&self, inverse: &Matrix, variance: f64) -> Matrix {
+        let mut covariance = Matrix::ZERO;
+        for score in self.scores.iter().flatten() {
+            let moved = inverse.apply(score);
+            covariance.add_product(&moved, &moved, variance * SHARE_OF_WAVES);
+        }
+        covariance
+    }
+}
+
 fn part_free(free: &Free, place: usize) -> bool {
     free.get(place).copied().unwrap_or(false)
 }
@@ -402,20 +493,53 @@ fn step(vector: &Vector, place: usize) -> f64 {
     }
 }
 
-/// A vector within what a drive can be.
-fn bounded(vector: &Vector) -> Vector {
-    let mut bounded = *vector;
-    let limits = [
-        (place::GAIN, 1e-3, 1e6),
-        (place::LN_OMEGA, -7.0, 0.4),
-        (place::LN_DAMPING, -3.5, 2.0),
-        (place::DELAY, -0.9, 200.0),
-        (place::DEAD_TIME, 0.0, 200.0),
-        (place::MAX_ACCELERATION, 1e-6, NO_LIMIT),
-        (place::LN_STRIBECK, -8.0, 8.0),
-    ];
-    for (place, low, high) in limits {
-        set(&mut bounded, place, |value| value.clamp(low, high));
+/// What a drive can be: place, least and most.
+const BOUNDS: [(usize, f64, f64); 8] = [
+    (place::GAIN, 1e-3, 1e6),
+    (place::FRICTION, 0.0, 1e6),
+    (place::LN_OMEGA, -7.0, 0.4),
+    (place::LN_DAMPING, -3.5, 2.0),
+    (place::DELAY, -0.9, 200.0),
+    (place::DEAD_TIME, 0.0, 200.0),
+    (place::MAX_ACCELERATION, 1e-6, NO_LIMIT),
+    (place::LN_STRIBECK, -8.0, 8.0),
+];
+
+impl Problem<'_> {
+    /// Friction that holds nothing may come out below zero, as noise has it.
+    fn bounds(&self) -> impl Iterator<Item = (usize, f64, f64)> {
+        let holds = self.held.is_some();
+        BOUNDS.into_iter().map(move |(place, low, high)| {
+            if place == place::FRICTION && !holds {
+                (place, -high, high)
+            } else {
+                (place, low, high)
+            }
+        })
     }
-    bounded
+
+    /// A vector within what a drive can be.
+    fn bounded(&self, vector: &Vector) -> Vector {
+        let mut bounded = *vector;
+        for (place, low, high) in self.bounds() {
+            set(&mut bounded, place, |value| value.clamp(low, high));
+        }
+        bounded
+    }
+
+    /// Takes those parameters out of a step that it would carry past their bounds: the others then move as they
+    /// should.
+    fn hold_at_bounds(&self, vector: &Vector, normal: &mut Matrix, gradient: &mut Vector) {
+        for (place, low, high) in self.bounds() {
+            let (value, pull) = (part(vector, place), part(gradient, place));
+            if (value <= low && pull < 0.0) || (value >= high && pull > 0.0) {
+                for other in 0..PARAMETERS {
+                    normal.set(place, other, 0.0);
+                    normal.set(other, place, 0.0);
+                }
+                normal.set(place, place, 1.0);
+                set(gradient, place, |_| 0.0);
+            }
+        }
+    }
 }

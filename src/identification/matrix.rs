@@ -33,6 +33,15 @@ impl Matrix {
         }
     }
 
+    /// Adds `scale`·`other`.
+    pub fn add(&mut self, other: &Self, scale: f64) {
+        for (row, theirs) in self.0.iter_mut().zip(&other.0) {
+            for (place, &value) in row.iter_mut().zip(theirs) {
+                *place += scale * value;
+            }
+        }
+    }
+
     /// The product with `other`.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {

@@ -91,7 +91,8 @@ impl Plan {
             command: command(level),
         };
         let mut program = Program::new(segments, bounds);
-        program.bounds.ticks = program.ticks().saturating_add(8);
+        // Segments may end late by what they are aligned to.
+        program.bounds.ticks = program.ticks().saturating_add(2000);
         program
     }
 
@@ -164,7 +165,7 @@ impl Plan {
         let settle = settle * damping.max(1.0) * damping.max(1.0);
         let brake = 2.0 * damping / omega + delay;
         let window = 2.0 * self.half_window_d;
-        let speed = (USED * window / (2.2 * settle))
+        let speed = (USED * window / (2.0 * settle))
             .min(0.08 * window / brake)
             .min(0.65 * self.max_speed);
         let large = (speed / gain).min(self.max_level);
@@ -178,8 +179,8 @@ impl Plan {
         }
         let main = Main {
             levels: [(0.3 * large).max(least), (0.58 * large).max(least), large],
-            go: 2.2 * settle,
-            rest: 1.3 * settle,
+            go: 2.0 * settle,
+            rest: settle,
             brake_d_per_level: gain * brake,
             period: core::f64::consts::TAU / omega,
             cruise: USED * window / (0.5 * large * gain),
@@ -237,16 +238,17 @@ impl Plan {
                     Segment::chirp(centre, 0.35 * large, band, main.whole(main.cruise))
                         .until(travel.max(1.0) as u32)
                 };
-                [
+                let mut segments = [Segment::default(); 8];
+                let there = [
                     chirp(1.0, far - offset_d),
                     Segment::rest(rest),
                     chirp(-1.0, 2.0 * far),
                     Segment::rest(rest),
-                    chirp(1.0, 2.0 * far),
-                    Segment::rest(rest),
-                    chirp(-1.0, far),
-                    Segment::rest(rest),
-                ]
+                ];
+                for (place, segment) in segments.iter_mut().zip(there) {
+                    *place = segment;
+                }
+                segments
             }
         };
         self.bounded(&segments, self.half_window_d, self.max_level)

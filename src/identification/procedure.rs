@@ -12,13 +12,16 @@ use super::program::Program;
 use super::recorder::{Recorder, Records};
 use super::refusal::Refusal;
 use super::{conclusion, seed};
-use crate::axis::Axis;
+use crate::axis::{Axis, StartError};
+use crate::supervisor::Fault;
 use crate::units::AxisScale;
 
 /// Fewest records that there must be room for.
 pub const MIN_RECORDS: usize = 6000;
 /// Travel that shows that a ramp broke the axis away, d.
 const BROKE_AWAY_D: f64 = 3.0;
+/// Longest wait for rest before an experiment, s.
+const LONGEST_WAIT_S: f64 = 3.0;
 /// Travel in a rest that shows that nothing holds the axis, d.
 const DRIFTS_D: f64 = 4.0;
 
@@ -72,6 +75,8 @@ pub struct Identification<'w> {
     recorder: Recorder<'w>,
     stage: Option<Stage>,
     running: bool,
+    /// A program that waits for rest, and for how many ticks it has.
+    waiting: Option<(Program, u32)>,
     /// Count at which all of it began.
     centre: i64,
     /// Level of the proof.
@@ -81,7 +86,7 @@ pub struct Identification<'w> {
     probe_levels: [f64; 2],
     probe: Option<Vector>,
     main: Option<Main>,
-    fit: Option<(Fit, [f64; 2])>,
+    fit: Option<(Fit, Option<[f64; 2]>)>,
 }
 
 impl<'w> Identification<'w> {
@@ -108,6 +113,7 @@ impl<'w> Identification<'w> {
             recorder: Recorder::new(memory),
             stage: None,
             running: false,
+            waiting: None,
             centre: 0,
             level: 0.0,
             drifts: false,
@@ -139,6 +145,9 @@ impl<'w> Identification<'w> {
     /// # Errors
     /// [`Refusal`]. The loop then stays open at zero command: disable the axis before it is released.
     pub fn tend(&mut self, axis: &mut Axis<'_>) -> Result<Option<Identified>, Refusal> {
+        if let Some((program, waited)) = self.waiting.take() {
+            return self.start(axis, program, waited).map(|()| None);
+        }
         let mut ending = None;
         if let Some(experiment) = axis.experiment() {
             self.feed(experiment);
@@ -147,15 +156,40 @@ impl<'w> Identification<'w> {
         if self.running {
             return Ok(None);
         }
+        if let Some(fault) = axis.outputs().fault {
+            self.judge(fault)?;
+        }
         match self.next(axis.outputs().count, ending)? {
-            Next::Run(program) => {
-                axis.start_experiment(&program)?;
-                Ok(None)
-            }
+            Next::Run(program) => self.start(axis, program, 0).map(|()| None),
             Next::Done(identified) => {
                 axis.release_experiment();
                 Ok(Some(identified))
             }
+        }
+    }
+
+    /// What a fault that cut the proof of the sign short says of it.
+    fn judge(&self, fault: Fault) -> Result<(), Refusal> {
+        let [moved_d, _] = pulses(self.recorder.records());
+        let level = self.level;
+        match (self.stage, fault) {
+            (Some(Stage::Proof), Fault::EncoderLoss) => Err(Refusal::NoMotion { level, moved_d }),
+            (Some(Stage::Proof), Fault::MotionAgainstCommand) => {
+                Err(Refusal::WrongPolarity { level, moved_d })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Starts a program as soon as the axis has come to rest.
+    fn start(&mut self, axis: &mut Axis<'_>, program: Program, waited: u32) -> Result<(), Refusal> {
+        let most = LONGEST_WAIT_S * self.plan.tick_hz;
+        match axis.start_experiment(&program) {
+            Err(StartError::NotAtRest) if f64::from(waited) < most => {
+                self.waiting = Some((program, waited.saturating_add(1)));
+                Ok(())
+            }
+            started => Ok(started?),
         }
     }
 
@@ -193,7 +227,8 @@ impl<'w> Identification<'w> {
         }
         self.stage = Some(stage);
         self.running = true;
-        Next::Run(program.about(self.centre))
+        let aligned = program.aligned(self.recorder.decimation());
+        Next::Run(aligned.about(self.centre))
     }
 
     /// The next pulses of the proof.
@@ -391,8 +426,8 @@ fn broke_away(records: Records<'_>, sign: f64) -> Option<u32> {
 }
 
 /// Ticks in which a ramp breaks that drive away, as [`broke_away`] sees it.
-pub fn broken_away_after(vector: &Vector, held: [f64; 2], slope: f64, most: u32) -> u32 {
-    let mut drive = Drive::new(vector, held);
+pub fn broken_away_after(vector: &Vector, held: f64, slope: f64, most: u32) -> u32 {
+    let mut drive = Drive::new(vector, Some([held; 2]));
     // The first record that counts is the first one with a command.
     let ramp = |tick: isize| slope * tick.saturating_add(1).max(0) as f64;
     for tick in 0..most {

@@ -152,6 +152,8 @@ pub struct Program {
     pub control: Loop,
     /// Where its window is centred, d; none: where it starts.
     pub centre: Option<i64>,
+    /// Segments end only after whole multiples of so many ticks.
+    pub aligned_to: u32,
 }
 
 impl Program {
@@ -169,6 +171,7 @@ impl Program {
             bounds,
             control: Loop::Open,
             centre: None,
+            aligned_to: 1,
         }
     }
 
@@ -186,6 +189,15 @@ impl Program {
     pub const fn about(self, centre: i64) -> Self {
         Self {
             centre: Some(centre),
+            ..self
+        }
+    }
+
+    /// The same with segments that end only after whole multiples of `ticks`, as records do.
+    #[must_use]
+    pub fn aligned(self, ticks: u32) -> Self {
+        Self {
+            aligned_to: ticks.max(1),
             ..self
         }
     }

@@ -58,8 +58,8 @@ pub fn fit(
 
 /// Static friction as the aim that breaks away.
 #[must_use]
-pub fn held(gain: f64, drift: f64, break_command: Option<[f64; 2]>) -> [f64; 2] {
-    break_command.map_or([0.0; 2], |[forward, backward]| {
+pub fn held(gain: f64, drift: f64, break_command: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    break_command.map(|[forward, backward]| {
         [gain * forward + drift, gain * backward - drift].map(|aim| aim.max(0.0))
     })
 }

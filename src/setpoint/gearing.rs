@@ -79,7 +79,10 @@ pub struct Gearing {
     /// Setpoint less [`Self::last`], 2⁻⁴⁶ d.
     offset: i128,
     velocity: i32,
+    /// Largest velocity and acceleration that are followed.
     largest: (i64, i64),
+    /// Largest way of a tick, 2⁻¹⁶ d: a count more or less than the velocity says is no jump.
+    largest_way: u64,
     is_lost: bool,
 }
 
@@ -141,6 +144,10 @@ impl Gearing {
                 i64::from(limits.velocity().to_bits()),
                 acceleration.wrapping_add(acceleration.wrapping_shr(2)),
             ),
+            largest_way: i64::from(limits.velocity().to_bits())
+                .wrapping_shr(Velocity::FRAC_NBITS - Position::FRAC_NBITS)
+                .wrapping_add(config.ratio.of(2 << Position::FRAC_NBITS).wrapping_abs())
+                .unsigned_abs(),
             is_lost: false,
         }
     }
@@ -197,15 +204,15 @@ impl Gearing {
         let delta = master.delta();
         let fits = delta.unsigned_abs() < MAX_STEP.unsigned_abs();
         let step = if fits { delta } else { 0 };
-        self.geared = self
-            .geared
-            .wrapping_add(ratio.step(&mut self.carried, step));
+        let counted = ratio.step(&mut self.carried, step);
+        self.geared = self.geared.wrapping_add(counted);
         let place = self.geared.wrapping_add(ratio.of(master.part()));
         let estimate = master.estimate();
         let velocity = ratio.of(estimate.velocity.to_bits());
         let acceleration = ratio.of(estimate.acceleration.to_bits());
         let is_followable = fits
             && master.is_present()
+            && counted.unsigned_abs() <= self.largest_way
             && velocity.unsigned_abs() <= self.largest.0.unsigned_abs()
             && acceleration.unsigned_abs() <= self.largest.1.unsigned_abs();
         let followed = Followed {

@@ -2,6 +2,7 @@
 
 mod params;
 mod refusal;
+mod status;
 
 pub use params::{Config, SourceParams};
 pub use refusal::{GearError, SelectError};
@@ -14,9 +15,7 @@ use super::master::Master;
 use super::plan::Plan;
 use super::profile::Limits;
 use super::step_dir::StepDir;
-use super::thread::{
-    SpindleTrouble, Thread, ThreadFigures, ThreadOrder, ThreadPhase, ThreadRefusal,
-};
+use super::thread::{Thread, ThreadFigures, ThreadOrder, ThreadRefusal};
 use super::trajectory::{QueueError, Trajectory};
 use super::travel::TravelLimits;
 use crate::hal::{Capture, Reference};
@@ -165,73 +164,6 @@ impl Sources {
         }
     }
 
-    /// True while a motion is commanded; a stop is one until it stands, a pass of a thread from its beginning to its end.
-    #[must_use]
-    pub const fn is_moving(&self) -> bool {
-        if self.stopping {
-            return !self.stop.is_at_rest();
-        }
-        match self.selected {
-            Source::Trajectory => self.trajectory.is_moving() || self.is_threading(),
-            Source::StepDir => self.step_dir.is_moving(),
-            Source::Analog => self.analog.is_moving(),
-            Source::Gearing => self.gearing.is_moving(),
-        }
-    }
-
-    const fn is_threading(&self) -> bool {
-        !matches!(self.thread.phase(), ThreadPhase::Idle)
-    }
-
-    /// True while a stop runs, or while it is not yet allowed to move after one.
-    #[must_use]
-    pub const fn is_stopping(&self) -> bool {
-        self.stopping
-    }
-
-    /// Why the source cannot be followed any more, found in the last tick. A stop has then begun, and planned moves
-    /// are selected.
-    #[must_use]
-    pub const fn trouble(&self) -> Option<Fault> {
-        self.trouble
-    }
-
-    /// The source that is selected.
-    #[must_use]
-    pub const fn selected(&self) -> Source {
-        self.selected
-    }
-
-    /// How far a pass of a thread has come.
-    #[must_use]
-    pub const fn thread_phase(&self) -> ThreadPhase {
-        self.thread.phase()
-    }
-
-    /// What was wrong with the spindle in the last pass.
-    #[must_use]
-    pub const fn spindle_trouble(&self) -> Option<SpindleTrouble> {
-        self.thread.trouble()
-    }
-
-    /// The tool is to be retracted.
-    #[must_use]
-    pub const fn retract(&self) -> bool {
-        self.thread.retract()
-    }
-
-    /// How far the gear is engaged.
-    #[must_use]
-    pub const fn gear(&self) -> Gear {
-        self.gearing.gear()
-    }
-
-    /// The second encoder.
-    #[must_use]
-    pub const fn master(&self) -> &Master {
-        &self.master
-    }
-
     /// Takes what the second encoder's inputs saw, in every tick and before [`Self::step`].
     #[inline]
     pub fn read_master(&mut self, capture: Option<&Capture<'_>>, is_lost: bool) {
@@ -304,7 +236,13 @@ impl Sources {
     /// ordered then, except to hold, which ends it where it is; all sources are dropped by it.
     pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> Setpoint {
         self.trouble = None;
+        // Planned moves first, and short: the others have budgets of their own.
+        let is_planned = self.selected == Source::Trajectory && !self.is_threading();
         self.last = if permit == Permit::Follow && !self.stopping {
+            if is_planned {
+                self.last = self.trajectory.step(tick);
+                return self.last;
+            }
             match self.follow(tick, reference) {
                 Ok(setpoint) => setpoint,
                 Err(fault) => self.lose(tick, fault),
@@ -315,7 +253,7 @@ impl Sources {
         self.last
     }
 
-    #[inline]
+    #[inline(never)]
     fn follow(&mut self, tick: u32, reference: &Reference<'_>) -> Result<Setpoint, Fault> {
         let (setpoint, is_lost) = match self.selected {
             Source::Trajectory if self.is_threading() => {

@@ -130,7 +130,10 @@ impl SupervisorParams {
                 warning_share: (self.following_warning_share * 32_768.0) as u32,
                 standstill: q16(d(self.standstill_mm)),
                 standstill_after: ticks(self.standstill_after_s),
-            },
+                quiet: 0,
+                quiet_at_rest: 0,
+            }
+            .with_quiet(),
             disabled: disabled::Limits {
                 way: d(self.disabled_mm) as i64,
                 after: ticks(self.disabled_after_s),
@@ -160,9 +163,9 @@ impl SupervisorParams {
                 counts_per_revolution: revolution as i32,
                 tolerance: self.index_tolerance_d as i32,
                 within: if revolution >= 1.0 {
-                    (revolution * self.index_within_revolutions) as i64
+                    (revolution * self.index_within_revolutions) as u32
                 } else {
-                    i64::MAX
+                    u32::MAX
                 },
             },
             overspeed: velocity(overspeed),

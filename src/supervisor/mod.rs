@@ -107,7 +107,7 @@ impl Supervisor {
             && situation.enable
             && (situation.illegal | situation.missed_ticks) == 0
             && self.reported.is_none()
-            && *situation.lines == Lines::default()
+            && is_well(situation.lines)
             && self.watch.readback.is_good(tolerance, readback, told);
         if is_quiet {
             Permit::Follow
@@ -183,8 +183,7 @@ impl Supervisor {
         if !self.in_loop {
             return self.review_off(review);
         }
-        self.watch.look(&self.config, review);
-        if self.watch.is_silent() && review.trouble.is_none() {
+        if self.watch.is_quiet(&self.config, review) && review.trouble.is_none() {
             return review.permit;
         }
         self.judge(review)
@@ -196,9 +195,11 @@ impl Supervisor {
         if let Some(fault) = review.trouble {
             self.trip(Trip::line(fault), review.tick);
         }
-        let (warnings, found) = self.watch.take();
-        self.warnings = self.warnings.union(warnings);
-        if let Some(trip) = found {
+        let found = self.watch.look(&self.config, review);
+        if found.is_warning {
+            self.warnings = self.warnings.with(Fault::FollowingError);
+        }
+        if let Some(trip) = found.trip {
             self.trip(trip, review.tick);
         }
         let permit = self.sequence.permit().min(review.permit);
@@ -210,7 +211,8 @@ impl Supervisor {
     #[inline(never)]
     fn review_off(&mut self, review: &Review<'_>) -> Permit {
         self.moving = false;
-        self.watch.restart(&self.config, review.observation);
+        self.watch
+            .restart(&self.config, review.observation, review.tick);
         let is_off = review.permit == Permit::Off;
         if let Some(trip) = self
             .watch
@@ -246,4 +248,10 @@ impl Supervisor {
     pub fn note_context(&mut self, context: &Context) {
         self.latch.note(context);
     }
+}
+
+/// True if no line stops the axis: limit switches are judged with the motion.
+#[inline(always)]
+const fn is_well(lines: &Lines) -> bool {
+    lines.drive_ready & !(lines.drive_fault | lines.encoder_lost | lines.emergency_stop)
 }

@@ -2,7 +2,6 @@
 
 use super::config::Config;
 use super::fault::Fault;
-use super::fault_set::FaultSet;
 use super::monitor::following::{Following, Verdict};
 use super::monitor::{
     against, disabled, encoder_loss, index, leaky, readback, saturation, speed, travel,
@@ -11,7 +10,7 @@ use super::record::Trip;
 use super::{Review, Situation};
 use crate::capture::Observation;
 
-/// The monitors, and what they found in a tick.
+/// The monitors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
     pub following: Following,
@@ -24,62 +23,90 @@ pub(super) struct Watch {
     disabled: disabled::Disabled,
     illegal: leaky::Leaky,
     missed: leaky::Leaky,
-    /// The first of this tick, in the order of [`Self::look`].
-    found: Option<Trip>,
-    warnings: FaultSet,
+    /// A monitor is in the middle of a run.
+    busy: bool,
+}
+
+/// What was found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// The following error is above its warning level.
+    pub is_warning: bool,
+    /// The first fault, in the order of [`Watch::look`].
+    pub trip: Option<Trip>,
 }
 
 impl Watch {
-    /// Looks at a tick in which the loop is closed.
-    #[inline]
-    pub fn look(&mut self, config: &Config, review: &Review<'_>) {
+    /// Looks at a tick in which the loop is closed; true if there is nothing to be said about it.
+    ///
+    /// Most ticks need no more than this: a few comparisons, and none of the monitors in the middle of a run.
+    #[inline(always)]
+    pub fn is_quiet(&mut self, config: &Config, review: &Review<'_>) -> bool {
+        let Review {
+            observation,
+            lines,
+            active,
+            ..
+        } = *review;
+        let velocity = review.estimate.velocity.to_bits();
+        let told = review.told.to_bits();
+        let delta = observation.delta;
+        let is_at_rest = !review.moving && review.setpoint.velocity.to_bits() == 0;
+        let error = review.following_error;
+        let follows = self
+            .following
+            .is_quiet(&config.following, error, is_at_rest, review.tick);
+        let agrees = delta == 0 || delta ^ told >= 0;
+        let loss = &config.encoder_loss;
+        let answers = told.saturating_abs() <= loss.level || delta.unsigned_abs() >= loss.counts;
+        follows
+            && agrees
+            && answers
+            && velocity.saturating_abs() <= config.overspeed
+            && self.index.way(observation.count).unsigned_abs() <= config.index.within
+            && !(self.busy | lines.limit_low | lines.limit_high | active.high | active.low)
+            && !observation.has_index()
+    }
+
+    /// Looks at it in full.
+    pub fn look(&mut self, config: &Config, review: &Review<'_>) -> Found {
         let Review { observation, .. } = *review;
         let velocity = review.estimate.velocity.to_bits();
         let commanded = review.setpoint.velocity.to_bits();
         let told = review.told.to_bits();
-        let count = observation.count;
-
-        if review.open_loop {
-            self.against = against::Against::default();
-        } else if let Some(trip) =
-            self.against
-                .check(&config.against, told, observation.delta, velocity)
-        {
-            self.find(trip);
-        }
-        if let Some(trip) = self
-            .encoder_loss
-            .check(&config.encoder_loss, told, count as u32)
-        {
-            self.find(trip);
-        }
-        if let Some(latch) = observation.index()
-            && let Some(trip) = self
-                .index
-                .note(&config.index, latch.count, observation.delta)
-        {
-            self.find(trip);
-        }
-        if let Some(trip) = self.index.check(&config.index, count) {
-            self.find(trip);
-        }
-        if let Some(trip) = travel::check(review.lines, commanded, velocity, config.still) {
-            self.find(trip);
-        }
-        if let Some(trip) = self.overspeed.check(config.overspeed, velocity) {
-            self.find(trip);
-        }
-        if let Some(trip) = self.saturation.check(config.saturated_ticks, review.active) {
-            self.find(trip);
-        }
+        let (count, delta) = (observation.count, observation.delta);
+        let index = observation.index();
         let error = review.following_error;
         let verdict = self
             .following
-            .check(&config.following, error, commanded, review.moving);
-        match verdict {
-            Verdict::Good => {}
-            Verdict::Warning => self.warnings = self.warnings.with(Fault::FollowingError),
-            Verdict::Fault(trip) => self.find(trip),
+            .judge(&config.following, error, commanded, review.tick);
+        let against = if review.open_loop {
+            self.against = against::Against::default();
+            None
+        } else {
+            self.against.check(&config.against, told, delta, velocity)
+        };
+        let found = [
+            against,
+            self.encoder_loss
+                .check(&config.encoder_loss, told, count as u32, delta),
+            index.and_then(|latch| self.index.note(&config.index, latch.count, delta)),
+            self.index.check(&config.index, count),
+            travel::check(review.lines, commanded, velocity, config.still),
+            self.overspeed.check(config.overspeed, velocity),
+            self.saturation.check(config.saturated_ticks, review.active),
+            match verdict {
+                Verdict::Fault(trip) => Some(trip),
+                Verdict::Good | Verdict::Warning => None,
+            },
+        ];
+        self.busy = self.against.is_busy()
+            || self.encoder_loss.is_busy()
+            || self.overspeed.is_busy()
+            || self.saturation.is_busy();
+        Found {
+            is_warning: verdict == Verdict::Warning,
+            trip: found.into_iter().flatten().next(),
         }
     }
 
@@ -123,8 +150,9 @@ impl Watch {
     }
 
     /// Starts anew what counts from the moment at which control begins.
-    pub fn restart(&mut self, config: &Config, observation: &Observation<'_>) {
-        self.following.restart();
+    pub fn restart(&mut self, config: &Config, observation: &Observation<'_>, tick: u32) {
+        self.following.restart(tick);
+        self.busy = false;
         self.against = against::Against::default();
         self.encoder_loss = encoder_loss::EncoderLoss::default();
         self.overspeed = speed::Overspeed::default();
@@ -143,25 +171,5 @@ impl Watch {
         self.illegal = leaky::Leaky::default();
         self.missed = leaky::Leaky::default();
         self.readback = readback::Readback::default();
-    }
-
-    /// True if nothing was found.
-    #[inline]
-    pub const fn is_silent(&self) -> bool {
-        self.found.is_none() && self.warnings.is_empty()
-    }
-
-    /// What was found in this tick.
-    pub fn take(&mut self) -> (FaultSet, Option<Trip>) {
-        let warnings = core::mem::take(&mut self.warnings);
-        (warnings, self.found.take())
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn find(&mut self, trip: Trip) {
-        if self.found.is_none() {
-            self.found = Some(trip);
-        }
     }
 }

@@ -2,7 +2,7 @@
 
 use leadscrew::axis::{Axis, Inputs};
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::hal::{Encoder, Lines};
+use leadscrew::hal::Encoder;
 use leadscrew::identification::{Identification, Identified, IdentifyParams, Refusal};
 use leadscrew::params::{AxisParams, MotionParams};
 use leadscrew::units::{AxisScale, Command};
@@ -19,7 +19,6 @@ pub struct Bench {
     pub seed: u64,
     /// −1.0 for a command whose wires are exchanged.
     pub polarity: i32,
-    pub lines: fn(u32) -> Lines,
 }
 
 /// What came of it.
@@ -29,7 +28,6 @@ pub struct Outcome {
     pub furthest_d: f64,
     /// Largest command, of full command.
     pub largest_command: f64,
-    pub ticks: u32,
     /// Command at the end.
     pub last_command: Command,
 }
@@ -42,7 +40,6 @@ impl Bench {
             tick_hz: 1000.0,
             seed: 1,
             polarity: 1,
-            lines: |_| Lines::default(),
         }
     }
 
@@ -87,11 +84,7 @@ impl Bench {
             let (command, enabled) = (axis.outputs().command, axis.outputs().enabled);
             let command = Command::from_bits(command.to_bits() * self.polarity);
             machine.step(command, enabled);
-            let inputs = Inputs {
-                lines: (self.lines)(tick),
-                ..Inputs::of(machine.capture(), true)
-            };
-            axis.step(&inputs);
+            axis.step(&Inputs::of(machine.capture(), true));
             let outputs = axis.outputs();
             furthest_d = furthest_d.max((machine.truth().shaft.position - start).abs());
             largest_command = largest_command.max(outputs.command.to_num::<f64>().abs());
@@ -104,7 +97,6 @@ impl Bench {
                 result,
                 furthest_d,
                 largest_command,
-                ticks: tick,
                 last_command: axis.outputs().command,
             };
             match done {

@@ -91,6 +91,7 @@ fn happen(rig: &mut Rig, plan: &Plan, event: &Event) {
         Event::Reconfigure(error_mm) => {
             let mut params = plan.axis_params();
             params.supervisor.following_error_mm = error_mm;
+            // Refused in motion where it would move the axis.
             let _ = rig.axis.reconfigure(params.validate().unwrap());
         }
     }

@@ -1,10 +1,14 @@
 //! Soft limits for setpoints that no plan made.
 
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew::hal::Reference;
+use leadscrew::params::AxisParams;
 use leadscrew::setpoint::Setpoint;
 use leadscrew::setpoint::follower::{Config, Follower};
 use leadscrew::setpoint::limits::Limits;
+use leadscrew::setpoint::sources::{Source, Sources};
 use leadscrew::setpoint::travel::TravelLimits;
-use leadscrew::supervisor::Fault;
+use leadscrew::supervisor::{Fault, Permit};
 use leadscrew::units::{Position, Velocity};
 use proptest::prelude::*;
 
@@ -96,4 +100,31 @@ fn limits_that_leave_no_way_are_refused_with_their_figures() {
         error.to_string(),
         "limits of travel from 5 to 5 d leave no way: the low one must be below the high one"
     );
+}
+
+#[test]
+fn pulses_into_a_soft_limit_stop_the_axis_within_it_and_say_so() {
+    let limits = Limits::new(50.0, 0.9, 0.05).unwrap();
+    let travel = TravelLimits::new(Position::from_num(-3000), Position::from_num(5000)).unwrap();
+    let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
+    let config = AxisParams::new(estimator).validate().unwrap();
+    let mut sources = Sources::new(&limits, &config.sources);
+    sources.hold(Position::ZERO);
+    sources.set_travel(Some(travel));
+    sources.select(Source::StepDir).unwrap();
+    let (mut steps, mut trouble, mut last) = (0, None, Setpoint::default());
+    for tick in 0..2000_u32 {
+        // Up to speed by 0.5 d/tick².
+        steps += (tick / 2).min(40);
+        let reference = Reference {
+            steps,
+            ..Reference::default()
+        };
+        last = sources.step(tick, &reference, Permit::Follow);
+        assert!(travel.contains(last.position), "{last:?}");
+        trouble = trouble.or(sources.trouble());
+    }
+    assert_eq!(trouble, Some(Fault::SoftLimit));
+    assert_eq!(last.velocity, Velocity::ZERO);
+    assert!(last.position > 4900, "{last:?}");
 }

@@ -1,5 +1,8 @@
 //! What is done in a run: by the person at the panel, and by fate.
 
+use leadscrew::setpoint::sources::Source;
+use leadscrew::setpoint::thread::ThreadOrder;
+
 use crate::faults::Channel;
 
 /// An action at a time.
@@ -16,6 +19,8 @@ pub struct Timed {
 pub enum Action {
     /// The person at the panel, or the control above, asks for something.
     Ask(Ask),
+    /// The outer control, or the spindle, does something.
+    Set(Outer),
     /// Something goes wrong, for a time.
     Trouble {
         /// What goes wrong.
@@ -25,7 +30,8 @@ pub enum Action {
     },
 }
 
-/// What is asked of the axis. Positions are those of the encoder from where it stood at the start.
+/// What is asked of the axis. Positions are from the origin that homing found, before that from where the axis stood at
+/// the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ask {
     /// Takes the axis under control.
@@ -43,13 +49,66 @@ pub enum Ask {
         /// How fast at most, mm/min; 0 for the largest feed of the axis.
         feed_mm_per_min: f64,
     },
-    /// Moves by a distance.
+    /// Moves by a distance, from the target if there is one.
     MoveBy {
         /// How far, mm.
         distance_mm: f64,
         /// How fast at most, mm/min; 0 for the largest feed of the axis.
         feed_mm_per_min: f64,
     },
+    /// Moves until it is stopped.
+    Jog {
+        /// How fast, mm/min; negative downward.
+        feed_mm_per_min: f64,
+    },
+    /// Feed hold.
+    Hold,
+    /// Ends a feed hold.
+    Resume,
+    /// Feed override.
+    Override {
+        /// Percent of the feed.
+        percent: u16,
+    },
+    /// Stops, and forgets the target.
+    Stop,
+    /// Sets soft limits of travel.
+    SetTravel {
+        /// The low one, mm.
+        low_mm: f64,
+        /// The high one, mm.
+        high_mm: f64,
+    },
+    /// Looks for the home switch and the index.
+    Home,
+    /// Follows another source of setpoints.
+    Select(Source),
+    /// Engages the gear, or disengages it.
+    Engage(bool),
+    /// Cuts a pass of a thread.
+    ArmThread(ThreadOrder),
+}
+
+/// What comes from outside the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outer {
+    /// Steps that an outer control gives from now on.
+    StepRate {
+        /// Steps a second; negative backward.
+        steps_per_s: f64,
+    },
+    /// The analog command of a legacy control from now on.
+    Analog {
+        /// Share of full scale.
+        level: f64,
+    },
+    /// The spindle goes to another speed.
+    SpindleSpeed {
+        /// rpm; negative backward.
+        rpm: f64,
+    },
+    /// The tool enters the workpiece, or leaves it.
+    Cut(bool),
 }
 
 /// What goes wrong.
@@ -84,7 +143,7 @@ pub enum Trouble {
     },
     /// The emergency-stop chain is open; power stays on for the stop.
     EmergencyStop,
-    /// The line receiver of the second encoder sees no signal.
+    /// The cable of the second encoder is cut, for good: no edge comes, and its line receiver tells of it.
     MasterLost,
     /// The encoder's index line is broken.
     IndexLost,

@@ -2,10 +2,12 @@
 
 use core::fmt;
 
+use leadscrew::axis::Refused;
 use leadscrew::params::ParamError;
+use leadscrew::setpoint::planner::PlannerError;
 use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
-use leadscrew::supervisor::ClearError;
+use leadscrew::setpoint::travel::TravelError;
 
 /// Why a scenario cannot run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +18,12 @@ pub enum ScenarioError {
     Plan(PlanError),
     /// The axis did not take a move.
     Queue(QueueError),
-    /// The axis does not clear its fault.
-    Clear(ClearError),
+    /// The planner does not plan it.
+    Planner(PlannerError),
+    /// There are no such limits of travel.
+    Travel(TravelError),
+    /// The axis does not do it.
+    Refused(Refused),
     /// There is no estimator of the name.
     NoSuchEstimator,
 }
@@ -28,7 +34,9 @@ impl fmt::Display for ScenarioError {
             Self::Param(error) => error.fmt(f),
             Self::Plan(error) => error.fmt(f),
             Self::Queue(error) => error.fmt(f),
-            Self::Clear(error) => error.fmt(f),
+            Self::Planner(error) => error.fmt(f),
+            Self::Travel(error) => error.fmt(f),
+            Self::Refused(error) => error.fmt(f),
             Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
         }
     }

@@ -4,8 +4,11 @@
 //! of the host says or a constant of the firmware; a [`Runner`] steps its [`World`] and its axis.
 
 pub mod action;
+mod built_in;
 mod definition;
+mod desk;
 mod error;
+mod fate;
 mod move_and_back;
 mod operator;
 mod plant;
@@ -14,11 +17,14 @@ mod sections;
 mod tuning;
 mod world;
 
-pub use action::{Action, Ask, EncoderTrouble, Interference, Timed, Trouble};
+pub use action::{Action, Ask, EncoderTrouble, Interference, Outer, Timed, Trouble};
+pub use built_in::{BUILT_IN, built_in};
 pub use definition::{Base, MAX_DURATION_S, Scenario, Setting, tick_at};
+pub use desk::{Desk, LEAD_TICKS};
 pub use error::ScenarioError;
+pub use fate::Fate;
 pub use move_and_back::{MoveAndBack, Script, Setup, Simulation, TimedMove};
-pub use operator::Operator;
+pub use operator::{Operator, Order, Seen};
 pub use plant::Plant;
 pub use runner::{Happening, Runner};
 pub use sections::{

@@ -241,10 +241,10 @@ impl<'m> Simulation<'m> {
         self.digest.value()
     }
 
-    /// Hands over the move that starts with the tick to come.
+    /// Hands over the move that starts with the tick to come; after a fault the axis stands to the end.
     fn queue_next_move(&mut self) -> Result<(), ScenarioError> {
         match self.script.moves.get(self.next_move) {
-            Some(next) if next.start == self.tick => {
+            Some(next) if next.start == self.tick && self.outputs.fault.is_none() => {
                 self.next_move += 1;
                 self.axis
                     .queue(&next.profile, next.start)

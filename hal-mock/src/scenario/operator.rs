@@ -1,9 +1,14 @@
 //! The person at the panel: plans what is asked of the axis, outside the tick.
 
-use leadscrew::axis::{Axis, Outputs};
-use leadscrew::params::AxisParams;
-use leadscrew::setpoint::profile::{Limits, Profile};
-use leadscrew::units::{AxisScale, Position, checked};
+use leadscrew::axis::{Axis, Request};
+use leadscrew::params::{AxisConfig, AxisParams};
+use leadscrew::setpoint::planner::{Planner, Timed};
+use leadscrew::setpoint::sources::Source;
+use leadscrew::setpoint::thread::ThreadPhase;
+use leadscrew::setpoint::travel::TravelLimits;
+use leadscrew::supervisor::State;
+use leadscrew::telemetry::Record;
+use leadscrew::units::{AxisScale, Position, Velocity, checked};
 
 use super::action::Ask;
 use super::error::ScenarioError;
@@ -11,70 +16,162 @@ use super::error::ScenarioError;
 /// Farthest position and longest move, mm.
 const MAX_TRAVEL_MM: f64 = 1e6;
 
-/// What the operator knows.
+/// What the operator knows of the axis, as the last tick left it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Where it is told to be, d.
+    pub commanded: Position,
+    /// The raw position of coordinate 0, if it is homed.
+    pub origin: Option<Position>,
+    /// It follows its plans, or could: nothing else moves it.
+    pub is_planned: bool,
+}
+
+impl Seen {
+    /// What a record tells, of an axis that only plans move and that is not homed.
+    #[must_use]
+    pub fn in_record(record: &Record) -> Self {
+        let state = record.state();
+        Self {
+            commanded: Position::from_bits(record.setpoint_position),
+            origin: None,
+            is_planned: state == State::Ready as u8 || state == State::Moving as u8,
+        }
+    }
+
+    /// What there is to see of `axis`.
+    #[must_use]
+    pub fn of(axis: &Axis<'_>) -> Self {
+        let in_control = matches!(axis.outputs().state, State::Ready | State::Moving);
+        Self {
+            commanded: axis.commanded().position,
+            origin: axis.homing().origin(),
+            is_planned: in_control
+                && !axis.homing().is_active()
+                && axis.source() == Source::Trajectory
+                && axis.thread_phase() == ThreadPhase::Idle,
+        }
+    }
+}
+
+/// What comes of what is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives for a moment, and there is no heap"
+)]
+pub enum Order {
+    /// The axis is to be under control, or not.
+    Enable(bool),
+    /// A request to the axis.
+    Axis(Request),
+    /// Nothing for now: it is remembered.
+    Nothing,
+}
+
+/// The operator.
 #[derive(Clone, Debug)]
 pub struct Operator {
-    params: AxisParams,
     scale: AxisScale,
+    fastest: f64,
+    planner: Planner,
     /// Where the axis stood in its first tick, d.
-    origin: Option<Position>,
-    enable: bool,
+    start: Option<Position>,
+    /// Something else than the planner's plans moved the axis.
+    is_stale: bool,
 }
 
 impl Operator {
-    /// An operator of the axis of `params`, who has not enabled it.
+    /// An operator of the axis of `params` and `config`, who has not enabled it.
     ///
     /// # Errors
     /// A resolution or a rate out of range.
-    pub fn new(params: &AxisParams) -> Result<Self, ScenarioError> {
-        let scale = AxisScale::new(params.motion.counts_per_mm, params.tick_hz)?;
+    pub fn new(params: &AxisParams, config: &AxisConfig) -> Result<Self, ScenarioError> {
         Ok(Self {
-            params: *params,
-            scale,
-            origin: None,
-            enable: false,
+            scale: AxisScale::new(params.motion.counts_per_mm, params.tick_hz)?,
+            fastest: params.motion.max_feed_mm_per_min,
+            planner: Planner::new(config.limits, Position::ZERO, 0),
+            start: None,
+            is_stale: true,
         })
     }
 
-    /// Takes note of where the axis stands in its first tick.
-    pub fn look(&mut self, outputs: &Outputs) {
-        self.origin.get_or_insert(outputs.setpoint.position);
+    /// Looks at the axis after every tick.
+    pub fn look(&mut self, seen: &Seen) {
+        self.start.get_or_insert(seen.commanded);
+        self.is_stale |= !seen.is_planned;
     }
 
-    /// The axis is to be under control.
-    #[must_use]
-    pub const fn enables(&self) -> bool {
-        self.enable
-    }
-
-    /// Has `ask` done from tick `tick` on, the next one.
+    /// What is to be done for `ask` at tick `start`, the next one or later.
     ///
     /// # Errors
-    /// The axis, or the planner, refuses it; the axis goes on as it was.
-    pub fn ask(&mut self, ask: &Ask, tick: u32, axis: &mut Axis<'_>) -> Result<(), ScenarioError> {
-        match *ask {
-            Ask::Enable => self.enable = true,
-            Ask::Disable => self.enable = false,
-            Ask::ClearFault => axis.clear_fault().map_err(ScenarioError::Clear)?,
-            Ask::ClearWarnings => axis.supervisor_mut().clear_warnings(),
+    /// The planner refuses it; the axis goes on as it was.
+    pub fn order(&mut self, ask: &Ask, start: u32, seen: &Seen) -> Result<Order, ScenarioError> {
+        if self.is_stale && seen.is_planned {
+            self.planner.begin(seen.commanded, start.wrapping_sub(1));
+            self.is_stale = false;
+        }
+        let planned = match *ask {
+            Ask::Enable => return Ok(Order::Enable(true)),
+            Ask::Disable => return Ok(Order::Enable(false)),
+            Ask::ClearFault => return Ok(Order::Axis(Request::ClearFault)),
+            Ask::ClearWarnings => return Ok(Order::Axis(Request::ClearWarnings)),
+            Ask::Home => return Ok(Order::Axis(Request::Home)),
+            Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
+            Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
+            Ask::ArmThread(order) => return Ok(Order::Axis(Request::ArmThread(order))),
+            Ask::SetTravel { low_mm, high_mm } => {
+                let low = self.raw(seen, "low_mm", low_mm)?;
+                let high = self.raw(seen, "high_mm", high_mm)?;
+                let travel = Some(TravelLimits::new(low, high).map_err(ScenarioError::Travel)?);
+                self.planner.set_travel(travel);
+                return Ok(Order::Axis(Request::Travel(travel)));
+            }
             Ask::MoveTo {
                 position_mm,
                 feed_mm_per_min,
             } => {
-                let origin = self.origin.unwrap_or_default();
-                let target = origin.saturating_add(self.distance("position_mm", position_mm)?);
-                let way = target.saturating_sub(axis.outputs().setpoint.position);
-                self.start(way, feed_mm_per_min, tick, axis)?;
+                let target = self.raw(seen, "position_mm", position_mm)?;
+                self.planner
+                    .move_to(target, self.feed(feed_mm_per_min)?, start)
             }
             Ask::MoveBy {
                 distance_mm,
                 feed_mm_per_min,
             } => {
-                let way = self.distance("distance_mm", distance_mm)?;
-                self.start(way, feed_mm_per_min, tick, axis)?;
+                let from = self.planner.target();
+                let from = from.unwrap_or_else(|| self.planner.state_at(start).position());
+                let target = from.saturating_add(self.distance("distance_mm", distance_mm)?);
+                self.planner
+                    .move_to(target, self.feed(feed_mm_per_min)?, start)
             }
+            Ask::Jog { feed_mm_per_min } => {
+                let feed = self.feed(feed_mm_per_min.max(-feed_mm_per_min))?;
+                let velocity = if feed_mm_per_min < 0.0 { -feed } else { feed };
+                self.planner.jog(velocity, start)
+            }
+            Ask::Hold => self.planner.hold(start),
+            Ask::Resume => self.planner.resume(start),
+            Ask::Override { percent } => self.planner.set_override(percent, start),
+            Ask::Stop => self.planner.stop(start),
+        };
+        let as_request = |Timed { plan, start }| Order::Axis(Request::Queue { plan, start });
+        planned
+            .map(|timed| timed.map_or(Order::Nothing, as_request))
+            .map_err(ScenarioError::Planner)
+    }
+
+    /// The axis refused the order: what was planned for it does not count.
+    pub fn withdraw(&mut self, order: &Order) {
+        if matches!(order, Order::Axis(Request::Queue { .. })) {
+            self.planner.withdraw();
         }
-        Ok(())
+    }
+
+    /// The raw position of a coordinate.
+    fn raw(&self, seen: &Seen, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
+        let origin = seen.origin.or(self.start).unwrap_or_default();
+        Ok(origin.saturating_add(self.distance(name, mm)?))
     }
 
     fn distance(&self, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
@@ -82,31 +179,13 @@ impl Operator {
         Ok(Position::saturating_from_num(self.scale.counts_from_mm(mm)))
     }
 
-    fn start(
-        &self,
-        way: Position,
-        feed_mm_per_min: f64,
-        tick: u32,
-        axis: &mut Axis<'_>,
-    ) -> Result<(), ScenarioError> {
-        let profile =
-            Profile::plan(way, &self.limits(feed_mm_per_min)?).map_err(ScenarioError::Plan)?;
-        axis.queue(&profile, tick).map_err(ScenarioError::Queue)
-    }
-
-    /// Limits of a move at `feed_mm_per_min`.
-    fn limits(&self, feed_mm_per_min: f64) -> Result<Limits, ScenarioError> {
-        let motion = &self.params.motion;
-        let fastest = motion.max_feed_mm_per_min;
-        let feed = match checked("feed_mm_per_min", feed_mm_per_min, 0.0, fastest)? {
-            0.0 => fastest,
+    /// A feed; 0 stands for the largest.
+    fn feed(&self, feed_mm_per_min: f64) -> Result<Velocity, ScenarioError> {
+        let feed = match checked("feed_mm_per_min", feed_mm_per_min, 0.0, self.fastest)? {
+            0.0 => self.fastest,
             feed => feed,
         };
-        Ok(Limits::new(
-            self.scale.velocity_from_feed(feed)?,
-            self.scale
-                .acceleration_from_m_s2(motion.max_acceleration_m_s2),
-            self.scale.jerk_from_m_s3(motion.max_jerk_m_s3),
-        )?)
+        let velocity = self.scale.velocity_from_feed(feed)?;
+        Ok(Velocity::saturating_from_num(velocity))
     }
 }

@@ -2,14 +2,23 @@
 
 use crate::board::BoardParams;
 use crate::machine::MachineParams;
+use crate::spindle::SpindleParams;
 
-/// A machine and its board.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// A machine, its board and its spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
     /// The machine.
     pub machine: MachineParams,
     /// Its switches, the lines of its drive, its brake.
     pub board: BoardParams,
+    /// The spindle; it is there if it turns, or is made to.
+    pub spindle: SpindleParams,
+}
+
+impl Default for Plant {
+    fn default() -> Self {
+        MachineParams::default().into()
+    }
 }
 
 impl From<MachineParams> for Plant {
@@ -17,6 +26,10 @@ impl From<MachineParams> for Plant {
         Self {
             machine,
             board: BoardParams::default(),
+            spindle: SpindleParams {
+                rpm: 0.0,
+                ..SpindleParams::default()
+            },
         }
     }
 }

@@ -1,13 +1,14 @@
 //! A run of a scenario, tick by tick.
 
-use leadscrew::axis::{Axis, Outputs};
+use leadscrew::axis::{Axis, Outputs, Request};
 use leadscrew::telemetry::Record;
 
-use super::action::{Action, Timed};
+use super::action::{Action, Ask, Timed};
 use super::definition::{Scenario, tick_at};
 use super::error::ScenarioError;
-use super::operator::Operator;
+use super::operator::{Operator, Order, Seen};
 use super::world::World;
+use crate::invariants::{Invariants, Violation};
 use crate::trace::TraceDigest;
 
 /// What became of an action.
@@ -29,6 +30,7 @@ pub struct Runner<'s> {
     /// The axis.
     pub axis: Axis<'s>,
     operator: Operator,
+    enable: bool,
     timeline: &'s [Timed],
     next: usize,
     tick_hz: f64,
@@ -36,6 +38,8 @@ pub struct Runner<'s> {
     ticks: u32,
     outputs: Outputs,
     digest: TraceDigest,
+    invariants: Invariants,
+    violation: Option<Violation>,
 }
 
 impl<'s> Runner<'s> {
@@ -46,10 +50,12 @@ impl<'s> Runner<'s> {
     pub fn new(scenario: &Scenario<'s>) -> Result<Self, ScenarioError> {
         let plant = scenario.plant();
         let params = scenario.axis_params(&plant.machine)?;
+        let config = params.validate()?;
         Ok(Self {
-            world: World::new(&plant, scenario.tick_hz, scenario.seed)?,
-            axis: Axis::new(params.validate()?),
-            operator: Operator::new(&params)?,
+            world: World::new(&plant, scenario)?,
+            axis: Axis::new(config),
+            operator: Operator::new(&params, &config)?,
+            enable: false,
             timeline: scenario.timeline,
             next: 0,
             tick_hz: scenario.tick_hz,
@@ -57,6 +63,8 @@ impl<'s> Runner<'s> {
             ticks: scenario.ticks()?,
             outputs: Outputs::default(),
             digest: TraceDigest::new(),
+            invariants: Invariants::new(params.output.limit),
+            violation: None,
         })
     }
 
@@ -80,17 +88,23 @@ impl<'s> Runner<'s> {
         self.axis
             .supervisor_mut()
             .set_store_corrupt(self.world.store_corrupt());
-        let inputs = self.world.inputs(self.operator.enables());
+        let inputs = self.world.inputs(self.enable);
         self.outputs = *self.axis.step(&inputs);
         self.digest.update(&inputs, &Record::new(&self.outputs));
-        self.operator.look(&self.outputs);
+        let checked = self.invariants.check(&self.axis);
+        self.violation = self.violation.or(checked.err());
+        self.operator.look(&Seen::of(&self.axis));
         self.tick += 1;
         Some(&self.outputs)
     }
 
     fn begin(&mut self, action: &Action) -> Result<(), ScenarioError> {
         match action {
-            Action::Ask(ask) => self.operator.ask(ask, self.tick, &mut self.axis),
+            Action::Ask(ask) => self.ask(ask),
+            Action::Set(outer) => {
+                self.world.set(outer);
+                Ok(())
+            }
             Action::Trouble { trouble, for_s } => {
                 let ticks = tick_at(*for_s, self.tick_hz);
                 Ok(self.world.begin(trouble, ticks)?)
@@ -98,10 +112,34 @@ impl<'s> Runner<'s> {
         }
     }
 
+    fn ask(&mut self, ask: &Ask) -> Result<(), ScenarioError> {
+        let order = self.operator.order(ask, self.tick, &Seen::of(&self.axis))?;
+        match &order {
+            Order::Enable(enable) => self.enable = *enable,
+            Order::Axis(request) => {
+                if let Err(refused) = self.axis.take(request) {
+                    self.operator.withdraw(&order);
+                    return Err(ScenarioError::Refused(refused));
+                }
+                if matches!(request, Request::ClearFault) {
+                    self.invariants.note_cleared();
+                }
+            }
+            Order::Nothing => {}
+        }
+        Ok(())
+    }
+
     /// Ticks of the whole run.
     #[must_use]
     pub const fn ticks(&self) -> u32 {
         self.ticks
+    }
+
+    /// The first rule that holds in every run and did not in this one.
+    #[must_use]
+    pub const fn violation(&self) -> Option<Violation> {
+        self.violation
     }
 
     /// Digest of the run so far.

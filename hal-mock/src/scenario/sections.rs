@@ -5,7 +5,6 @@ use leadscrew::params::{AxisParams, SectionVisitor};
 
 use super::definition::{Setting, set};
 use super::plant::Plant;
-use crate::board::BoardParams;
 use crate::machine::MachineParams;
 
 /// Something to be done with a table, whichever it is.
@@ -47,22 +46,23 @@ sections! {
 }
 
 sections! {
-    /// Sections of a machine's board.
+    /// Sections of what is around a machine.
     BOARD_SECTIONS,
-    /// Visits a section of a board; `None` if there is none of that name.
-    visit_board(BoardParams) {
-        drive_lines: drive_lines,
-        switches: switches,
-        brake: brake,
+    /// Visits one of these; `None` if there is none of that name.
+    visit_around(Plant) {
+        drive_lines: board.drive_lines,
+        switches: board.switches,
+        brake: board.brake,
+        spindle: spindle,
     }
 }
 
-/// Visits a section of a machine or of its board; `None` if there is none of that name.
+/// Visits a section of a machine or of what is around it; `None` if there is none of that name.
 pub fn visit_plant<V: Visitor>(plant: &mut Plant, section: &str, visitor: V) -> Option<V::Output> {
     if MACHINE_SECTIONS.contains(&section) {
         visit_machine(&mut plant.machine, section, visitor)
     } else {
-        visit_board(&mut plant.board, section, visitor)
+        visit_around(plant, section, visitor)
     }
 }
 

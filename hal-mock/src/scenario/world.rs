@@ -1,13 +1,16 @@
 //! The machine and its board with what goes wrong there.
 
 use leadscrew::axis::{Inputs, Outputs};
-use leadscrew::hal::Reference;
+use leadscrew::hal::{self, Reference};
 use leadscrew::units::{Command, RangeError};
 
-use super::action::{EncoderTrouble, Interference, Trouble};
+use super::action::{Action, EncoderTrouble, Interference, Outer, Timed, Trouble};
+use super::definition::Scenario;
 use super::plant::Plant;
 use crate::board::{self, Board, Converter, DriveHealth};
+use crate::encoder::EncoderModel;
 use crate::faults::{Bursts, Fault};
+use crate::spindle::{Spindle, encoder_1024};
 
 /// Troubles that may last at one time, of those that are no fault of the encoder.
 const MOST_TROUBLES: usize = 8;
@@ -17,6 +20,13 @@ const MOST_TROUBLES: usize = 8;
 pub struct World {
     /// The board, with the machine.
     pub board: Board,
+    /// The spindle, where the scenario has one.
+    pub spindle: Option<Spindle>,
+    tick_hz: f64,
+    /// Steps of the outer control so far, and in a tick.
+    steps: f64,
+    steps_per_tick: f64,
+    analog: Command,
     timer_hz: f64,
     /// Troubles that last, each with the first tick without it.
     lasting: [Option<(Trouble, u32)>; MOST_TROUBLES],
@@ -28,13 +38,28 @@ pub struct World {
 }
 
 impl World {
-    /// A world without trouble, at rest, with the errors that `seed` draws.
+    /// The world of `scenario`, without trouble and at rest.
     ///
     /// # Errors
     /// A parameter out of range.
-    pub fn new(plant: &Plant, tick_hz: f64, seed: u64) -> Result<Self, RangeError> {
+    pub fn new(plant: &Plant, scenario: &Scenario<'_>) -> Result<Self, RangeError> {
+        let Scenario { tick_hz, seed, .. } = *scenario;
+        let model = encoder_1024(EncoderModel::real());
+        let spindle = || Spindle::new(&plant.spindle, &model, tick_hz, seed);
+        let is_turned = |timed: &Timed| {
+            matches!(
+                timed.action,
+                Action::Set(Outer::SpindleSpeed { .. } | Outer::Cut(_))
+            )
+        };
+        let has_spindle = plant.spindle.rpm != 0.0 || scenario.timeline.iter().any(is_turned);
         Ok(Self {
             board: Board::new(&plant.board, &plant.machine, tick_hz, seed)?,
+            spindle: has_spindle.then(spindle).transpose()?,
+            tick_hz,
+            steps: 0.0,
+            steps_per_tick: 0.0,
+            analog: Command::ZERO,
             timer_hz: plant.machine.encoder.encoder.timer_hz,
             lasting: [None; MOST_TROUBLES],
             index_lost: false,
@@ -74,6 +99,24 @@ impl World {
         Ok(())
     }
 
+    /// Lets the outer control, or the spindle, do something from the next step on.
+    pub fn set(&mut self, outer: &Outer) {
+        match *outer {
+            Outer::StepRate { steps_per_s } => self.steps_per_tick = steps_per_s / self.tick_hz,
+            Outer::Analog { level } => self.analog = Command::saturating_from_num(level),
+            Outer::SpindleSpeed { rpm } => {
+                if let Some(spindle) = &mut self.spindle {
+                    spindle.set_rpm(rpm);
+                }
+            }
+            Outer::Cut(is_cutting) => {
+                if let Some(spindle) = &mut self.spindle {
+                    spindle.load(is_cutting);
+                }
+            }
+        }
+    }
+
     /// One tick: the machine moves as the axis wanted it in the last one.
     pub fn step(&mut self, outputs: &Outputs) {
         let is_over = |place: &Option<(Trouble, u32)>| matches!(place, Some((_, until)) if *until <= self.tick);
@@ -86,12 +129,22 @@ impl World {
         }
         self.tick = self.tick.saturating_add(1);
         self.board.step(outputs);
+        self.steps += self.steps_per_tick;
+        if let Some(spindle) = &mut self.spindle {
+            spindle.step();
+        }
     }
 
     /// What the axis sees.
     #[must_use]
     pub fn inputs(&self, enable: bool) -> Inputs<'_> {
-        let mut inputs = self.board.inputs(enable, Reference::default());
+        let reference = Reference {
+            // The hardware's counter wraps.
+            steps: libm::floor(self.steps) as i64 as u32,
+            master: self.spindle.as_ref().map(hal::Encoder::capture),
+            analog: self.analog,
+        };
+        let mut inputs = self.board.inputs(enable, reference);
         if self.index_lost {
             inputs.capture.index = None;
         }
@@ -124,7 +177,12 @@ impl World {
                     wrong.converter = Converter::OffBy(Command::saturating_from_num(offset));
                 }
                 Trouble::EmergencyStop => wrong.emergency_stop = true,
-                Trouble::MasterLost => wrong.master_lost = true,
+                Trouble::MasterLost => {
+                    wrong.master_lost = true;
+                    if let Some(spindle) = &mut self.spindle {
+                        spindle.cut_cable();
+                    }
+                }
                 Trouble::IndexLost => self.index_lost = true,
                 Trouble::StoreCorrupt => self.store_corrupt = true,
                 Trouble::Encoder(_) | Trouble::MissedTicks { .. } => {}

@@ -23,7 +23,7 @@ pub struct ScenarioFile {
     machine: Vec<Setting>,
     axis: Vec<Setting>,
     timeline: Vec<Timed>,
-    /// Names of the actions, in the order of the timeline.
+    /// Actions as the file writes them, in the order of the timeline.
     names: Vec<String>,
     /// All but what is kept above.
     frame: Scenario<'static>,
@@ -100,7 +100,7 @@ fn parse(text: &str, path: &Path) -> Result<ScenarioFile, Complaint> {
 }
 
 impl ScenarioFile {
-    /// The name of an action by its place in the timeline.
+    /// An action by its place in the timeline, as the file writes it.
     #[must_use]
     pub fn name(&self, index: usize) -> &str {
         self.names.get(index).map_or("", String::as_str)
@@ -151,7 +151,23 @@ fn section<'d>(
     }
 }
 
-/// All `[[at]]`, by ascending time, and the names of their actions.
+/// An action as the file writes it: its name, then its other keys.
+fn named(table: &DeTable<'_>) -> String {
+    let text = |value: &DeValue<'_>| match value {
+        DeValue::String(text) => text.to_string(),
+        DeValue::Float(number) => number.as_str().to_owned(),
+        DeValue::Integer(number) => number.as_str().to_owned(),
+        _ => String::new(),
+    };
+    let name = table.get("action").map(|name| text(name.get_ref()));
+    let keys = table
+        .iter()
+        .filter(|(key, _)| !["action", "time_s"].contains(&key.get_ref().as_ref()))
+        .map(|(key, value)| format!(" {}={}", key.get_ref(), text(value.get_ref())));
+    name.into_iter().chain(keys).collect()
+}
+
+/// All `[[at]]`, by ascending time, and how the file writes them.
 fn timeline(
     document: &DeTable<'_>,
     duration_s: f64,
@@ -184,8 +200,7 @@ fn timeline(
                 ),
             ));
         }
-        let name = table.get("action").and_then(|name| name.get_ref().as_str());
-        actions.push((timed, name.unwrap_or_default().to_owned()));
+        actions.push((timed, named(table)));
     }
     actions.sort_by(|(one, _), (other, _)| one.at_s.total_cmp(&other.at_s));
     Ok(actions.into_iter().unzip())

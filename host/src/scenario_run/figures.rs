@@ -1,6 +1,7 @@
 //! Figures of a run.
 
 use leadscrew::supervisor::{Fault, FaultSet, FirstFault, State};
+use leadscrew_hal_mock::invariants::Violation;
 use leadscrew_hal_mock::scenario::{Action, Timed};
 
 use super::{Record, Tick};
@@ -33,6 +34,8 @@ pub struct Figures {
     pub warnings: FaultSet,
     /// What each fault led to.
     pub stops: Vec<Stop>,
+    /// The first rule that holds in every run and did not in this.
+    pub violation: Option<Violation>,
     /// State at the end.
     pub final_state: State,
 }
@@ -65,6 +68,7 @@ impl Figures {
                 .filter(|happening| happening.refused.is_some())
                 .count(),
             stops: stops(record, timeline),
+            violation: record.violation,
             ..Self::default()
         };
         let (Some(first), Some(last)) = (record.ticks.first(), record.ticks.last()) else {

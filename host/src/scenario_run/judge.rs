@@ -31,6 +31,14 @@ pub fn judge(expect: &Expectations, figures: &Figures) -> Vec<Verdict> {
         found: named(first),
         met: first == expect.fault,
     });
+    if let Some(violation) = figures.violation {
+        verdicts.push(Verdict {
+            name: "invariants",
+            expected: "hold in every tick".to_owned(),
+            found: violation.to_string(),
+            met: false,
+        });
+    }
     if let Some(state) = expect.final_state {
         verdicts.push(Verdict {
             name: "final_state",

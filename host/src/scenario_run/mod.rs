@@ -4,11 +4,13 @@ mod events;
 mod figures;
 mod judge;
 
-use leadscrew::axis::Outputs;
+use leadscrew::axis::{Axis, Outputs};
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::setpoint::thread::SpindleTrouble;
 use leadscrew::supervisor::FirstFault;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
+use leadscrew_hal_mock::invariants::Violation;
 use leadscrew_hal_mock::scenario::{Happening, Runner, Scenario, ScenarioError};
 use thiserror::Error;
 
@@ -39,6 +41,10 @@ pub struct Record {
     pub actions: Vec<Happening>,
     /// Every fault that was latched, with its context.
     pub faults: Vec<FirstFault>,
+    /// The first rule that holds in every run and did not in this.
+    pub violation: Option<Violation>,
+    /// Why homing failed and what was wrong with the spindle, for people.
+    pub notes: Vec<String>,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -106,8 +112,30 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
         ticks,
         actions,
         faults,
+        violation: runner.violation(),
+        notes: notes(&runner.axis),
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
         counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
     })
+}
+
+/// What the axis has to say beside its faults.
+fn notes(axis: &Axis<'_>) -> Vec<String> {
+    let homing = axis.homing().failure().map(|failure| failure.to_string());
+    let distance = axis
+        .homing()
+        .index_distance()
+        .map(|distance| format!("home switch to index: {distance} d"));
+    let spindle = axis.spindle_trouble().map(|trouble| {
+        let what = match trouble {
+            SpindleTrouble::NoSignal => "no signal comes from its encoder",
+            SpindleTrouble::IndexSlipped => "its index came elsewhere than counted, or not at all",
+            SpindleTrouble::TooSlow => "it turned slower than the pass allows for, or back",
+            SpindleTrouble::TooFast => "it turned faster than the pass allows for",
+            SpindleTrouble::Jumped => "its count jumped",
+        };
+        format!("spindle: {what}")
+    });
+    [homing, distance, spindle].into_iter().flatten().collect()
 }

@@ -2,7 +2,7 @@
 
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::{EstimatorConfig, observer};
-use leadscrew::hal::{Encoder as _, Reference};
+use leadscrew::hal::{Encoder as _, Lines, Reference};
 use leadscrew::params::AxisParams;
 use leadscrew::setpoint::thread::{ThreadOrder, ThreadPhase};
 use leadscrew::tuning::DriveModel;
@@ -28,6 +28,8 @@ pub struct Lathe {
     pub machine: Machine,
     /// The spindle.
     pub spindle: Spindle,
+    /// Levels of the board's inputs.
+    pub lines: Lines,
     outputs: Outputs,
 }
 
@@ -50,6 +52,7 @@ impl Lathe {
             axis: Axis::new(params.validate()?),
             machine: Machine::new(machine, TICK_HZ, seed)?,
             spindle: Spindle::new(spindle, &encoder, TICK_HZ, seed ^ 0x51)?,
+            lines: Lines::default(),
             outputs: Outputs::default(),
         })
     }
@@ -64,6 +67,7 @@ impl Lathe {
                 master: Some(self.spindle.capture()),
                 ..Reference::default()
             },
+            lines: self.lines,
             ..Inputs::of(self.machine.capture(), true)
         };
         self.outputs = *self.axis.step(&inputs);
@@ -83,7 +87,20 @@ impl Lathe {
     /// A refusal of the axis, or a pass that did not come to its end.
     pub fn cut(&mut self, order: &ThreadOrder, counts_per_mm: f64) -> Result<Pass, ThreadError> {
         let figures = self.axis.arm_thread(order)?;
-        let mut pass = Pass::new(order, counts_per_mm, figures.rpm);
+        self.follow(order, counts_per_mm, figures.rpm)
+    }
+
+    /// Cuts on in the pass `order`, which was armed when the spindle turned at `rpm`.
+    ///
+    /// # Errors
+    /// A pass that did not come to its end.
+    pub fn follow(
+        &mut self,
+        order: &ThreadOrder,
+        counts_per_mm: f64,
+        rpm: f64,
+    ) -> Result<Pass, ThreadError> {
+        let mut pass = Pass::new(order, counts_per_mm, rpm);
         for _ in 0..PATIENCE {
             let outputs = self.step();
             let phase = self.axis.thread_phase();

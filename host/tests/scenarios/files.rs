@@ -1,6 +1,7 @@
 //! Runs of all files.
 
 use leadscrew::supervisor::Fault;
+use leadscrew_hal_mock::scenario::BUILT_IN;
 use leadscrew_host::fault_names::{FAULTS, fault_name};
 use leadscrew_host::scenario_run::{Figures, judge, run};
 
@@ -71,4 +72,12 @@ fn every_scenario_says_what_it_shows() {
             .collect()
     });
     assert!(silent.is_empty(), "{silent:?}");
+}
+
+#[test]
+fn what_the_firmware_has_in_it_is_what_the_files_say() {
+    for (name, scenario) in BUILT_IN {
+        let file = read(&super::root().join(format!("tests/scenarios/{name}.toml")));
+        assert_eq!(file.scenario(), *scenario, "{name}");
+    }
 }

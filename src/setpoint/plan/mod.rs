@@ -13,16 +13,18 @@
 //! 1e-11 d), which a position step of the same size in each tick covers, the creep; what that leaves, less than a
 //! unit a tick, is taken at the end.
 //!
-//! From rest to rest a plan takes at most three ticks longer than the time-optimal motion in continuous time. From
-//! a state with an acceleration it is slower where the optimum would not bring the acceleration to zero in
-//! between: by twice the time that the jerk takes to do that, at the most.
+//! From rest to rest a plan takes at most seven ticks longer than the time-optimal motion in continuous time, three
+//! with a cruise; from a state of motion the median is one tick. It is slower only where the axis is slowing down
+//! already and the optimum would not bring the acceleration to zero in between.
 
 mod ramp;
+mod search;
 mod state;
 
 use core::fmt;
 
 use ramp::{Course, Ramp};
+use search::Search;
 pub use state::State;
 pub(in crate::setpoint) use state::{Segment, in_units};
 
@@ -37,14 +39,6 @@ pub const MAX_TICKS: u32 = i32::MAX.cast_unsigned();
 const MAX_DISTANCE: u128 = 1 << (31 + STATE_FRAC);
 /// Segments of a plan: two changes of velocity of eight and six, and the cruise.
 pub(super) const MAX_SEGMENTS: usize = 15;
-/// A creep that is small enough to stop looking for a better velocity, 2⁻⁴⁸ d/tick (2e-10 d/tick).
-const FINE_CREEP: i128 = 1 << 16;
-
-/// Velocities as close as that cover the same way but for a fine creep, 2⁻⁴⁸ d/tick.
-const FINE_VELOCITY: i128 = 1 << 8;
-/// How often a cruise is made longer to meet the target; the ticks that are added grow, so that it ends.
-const LONGER_CRUISES: u32 = 64;
-
 /// A planned motion that ends at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Plan {
@@ -213,114 +207,4 @@ impl Plan {
             ticks: course.ticks,
         })
     }
-}
-
-/// The search for a cruising velocity, turned so that it is not negative.
-struct Search {
-    ramp: Ramp,
-    start: State,
-    way: i128,
-}
-
-impl Search {
-    /// To `velocity`, `ticks` of cruise, and to rest.
-    fn course(&self, velocity: i64, ticks: i128) -> Option<Course> {
-        let mut course = Course::new(self.start);
-        self.ramp.change(&mut course, velocity)?;
-        course.run(ticks, 0)?;
-        // What the first change leaves of its target by rounding would be a change by itself.
-        if velocity != 0 {
-            self.ramp.change(&mut course, 0)?;
-        }
-        Some(course)
-    }
-
-    /// What `course` leaves of the way, 2⁻⁴⁸ d; negative if it goes too far.
-    fn missing(&self, course: &Course) -> i128 {
-        self.start
-            .position
-            .wrapping_add(self.way)
-            .wrapping_sub(course.state.position)
-    }
-
-    /// The course that ends at the target, with velocities up to `top`.
-    fn solve(&self, top: i64) -> Option<Course> {
-        let mut below = Guess {
-            velocity: 0,
-            course: self.course(0, 0)?,
-        };
-        let mut above = Guess {
-            velocity: top,
-            course: self.course(top, 0)?,
-        };
-        let mut cruise = 0;
-        let missing = self.missing(&above.course);
-        if missing > 0 {
-            let top = i128::from(top);
-            let up = missing.wrapping_add(top).wrapping_sub(1);
-            cruise = up.checked_div(top)?.max(1);
-            above.course = self.course(above.velocity, cruise)?;
-        }
-        for attempt in 0..LONGER_CRUISES {
-            if self.narrow(&mut below, &mut above, cruise)? {
-                return Some(below.course);
-            }
-            // A greater velocity takes a tick more to reach, and in that tick the way grows by a jump: the target
-            // lies in it. A tick more of cruise at a lower velocity meets it.
-            cruise = cruise.wrapping_add(1 << (attempt / 4));
-            above = Guess {
-                velocity: below.velocity,
-                course: self.course(below.velocity, cruise)?,
-            };
-            below = Guess {
-                velocity: 0,
-                course: self.course(0, 0)?,
-            };
-        }
-        None
-    }
-
-    /// Brings `below`, which does not go too far, up to the target; false if the way jumps over it.
-    fn narrow(&self, below: &mut Guess, above: &mut Guess, cruise: i128) -> Option<bool> {
-        // Every other step halves what is left, so that 128 are enough for any function.
-        for step in 0..128 {
-            let rest = self.missing(&below.course);
-            let grain = below.course.grain();
-            let fine = FINE_CREEP
-                .max(grain)
-                .wrapping_mul(i128::from(below.course.ticks));
-            if rest <= fine {
-                return Some(true);
-            }
-            let width = above.velocity.wrapping_sub(below.velocity);
-            if i128::from(width) <= FINE_VELOCITY.max(grain) {
-                break;
-            }
-            let part = if step % 2 == 0 {
-                let span = rest.wrapping_sub(self.missing(&above.course));
-                // A little below the line, where the course does not go too far.
-                let share = rest as f64 / span as f64 * (1.0 - 1e-9);
-                ((width as f64 * share) as i64).clamp(1, width.wrapping_sub(1))
-            } else {
-                width.wrapping_shr(1)
-            };
-            let velocity = below.velocity.wrapping_add(part);
-            let guess = Guess {
-                velocity,
-                course: self.course(velocity, cruise)?,
-            };
-            if self.missing(&guess.course) >= 0 {
-                *below = guess;
-            } else {
-                *above = guess;
-            }
-        }
-        Some(false)
-    }
-}
-
-/// A cruising velocity and what comes of it.
-struct Guess {
-    velocity: i64,
-    course: Course,
 }

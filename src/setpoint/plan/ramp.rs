@@ -87,6 +87,15 @@ impl Ramp {
         }
     }
 
+    /// The velocity of `state` once its acceleration is taken back to zero.
+    pub(super) fn coast(&self, state: &State) -> i64 {
+        let acceleration = i128::from(state.acceleration);
+        let gain = self
+            .hill(acceleration)
+            .wrapping_sub(acceleration.wrapping_shr(1));
+        i128::from(state.velocity).wrapping_add(gain) as i64
+    }
+
     /// Takes `course` to the velocity `target` without acceleration; `None` if that is too long.
     pub(super) fn change(&self, course: &mut Course, target: i64) -> Option<()> {
         let (mut acceleration, mut gap, mut sign) = self.folded(&course.state, target);

@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::parameter_table;
 use crate::setpoint::profile::PlanError;
-use crate::units::RangeError;
+use crate::units::{RangeError, checked};
 
 parameter_table! {
     /// Thread cutting: what is kept in reserve.
@@ -53,6 +53,34 @@ pub struct ThreadOrder {
     pub spindle: SpindleWay,
     /// How much before the end of the full-depth part retraction is requested, °.
     pub retract_deg: f64,
+}
+
+impl ThreadOrder {
+    /// Checks what can be checked without the machine.
+    pub(super) fn check(&self) -> Result<(), ThreadRefusal> {
+        checked("lead_mm", self.lead_mm, 0.001, 1000.0)?;
+        for (name, value) in [
+            ("start_mm", self.start_mm),
+            ("from_mm", self.from_mm),
+            ("to_mm", self.to_mm),
+        ] {
+            checked(name, value, -1e5, 1e5)?;
+        }
+        checked("angle_deg", self.angle_deg, -360.0, 360.0)?;
+        checked("retract_deg", self.retract_deg, 0.0, 3600.0)?;
+        if self.start >= self.starts {
+            return Err(ThreadRefusal::NoSuchStart {
+                start: self.start,
+                starts: self.starts,
+            });
+        }
+        let (run_in, cut) = (self.from_mm - self.start_mm, self.to_mm - self.from_mm);
+        if run_in * cut > 0.0 {
+            Ok(())
+        } else {
+            Err(ThreadRefusal::Order)
+        }
+    }
 }
 
 /// What a pass will be.

@@ -103,7 +103,7 @@ impl Config {
         position: Position,
         origin: Position,
     ) -> Result<(Plan, ThreadFigures), ThreadRefusal> {
-        check(order)?;
+        order.check()?;
         let way = match order.spindle {
             SpindleWay::Forward => 1.0,
             SpindleWay::Backward => -1.0,
@@ -275,31 +275,6 @@ impl Plan {
         self.begin = self
             .begin
             .wrapping_add(turns.wrapping_mul(self.turn).wrapping_mul(self.way));
-    }
-}
-
-fn check(order: &ThreadOrder) -> Result<(), ThreadRefusal> {
-    checked("lead_mm", order.lead_mm, 0.001, 1000.0)?;
-    for (name, value) in [
-        ("start_mm", order.start_mm),
-        ("from_mm", order.from_mm),
-        ("to_mm", order.to_mm),
-    ] {
-        checked(name, value, -1e5, 1e5)?;
-    }
-    checked("angle_deg", order.angle_deg, -360.0, 360.0)?;
-    checked("retract_deg", order.retract_deg, 0.0, 3600.0)?;
-    if order.start >= order.starts {
-        return Err(ThreadRefusal::NoSuchStart {
-            start: order.start,
-            starts: order.starts,
-        });
-    }
-    let (run_in, cut) = (order.from_mm - order.start_mm, order.to_mm - order.from_mm);
-    if run_in * cut > 0.0 {
-        Ok(())
-    } else {
-        Err(ThreadRefusal::Order)
     }
 }
 

@@ -27,8 +27,12 @@ pub struct Against {
 }
 
 impl Against {
+    /// True while a run goes on.
+    pub const fn is_busy(&self) -> bool {
+        self.ticks != 0
+    }
+
     /// Judges a motion of `delta` d under `command` (Q.30), at an estimated velocity (Q11.20 d/tick).
-    #[inline]
     pub fn check(
         &mut self,
         limits: &Limits,
@@ -36,16 +40,9 @@ impl Against {
         delta: i32,
         velocity: i32,
     ) -> Option<Trip> {
-        let agrees = delta ^ command >= 0;
-        if self.ticks == 0 && (agrees || delta == 0) {
+        if self.ticks == 0 && delta == 0 {
             return None;
         }
-        self.follow(limits, command, delta, velocity)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn follow(&mut self, limits: &Limits, command: i32, delta: i32, velocity: i32) -> Option<Trip> {
         let is_silent = command.saturating_abs() <= limits.level;
         if is_silent || (delta != 0 && delta ^ command >= 0) {
             *self = Self::default();

@@ -29,23 +29,23 @@ pub struct EncoderLoss {
 }
 
 impl EncoderLoss {
-    /// Judges the low word of the count after a tick under `command` (Q.30).
-    #[inline]
-    pub fn check(&mut self, limits: &Limits, command: i32, count: u32) -> Option<Trip> {
+    /// True while it stands under command.
+    pub const fn is_busy(&self) -> bool {
+        self.ticks != 0
+    }
+
+    /// Judges the low word of the count after a tick that moved by `delta` d under `command` (Q.30).
+    pub fn check(&mut self, limits: &Limits, command: i32, count: u32, delta: i32) -> Option<Trip> {
+        if self.ticks == 0 {
+            self.anchor = count.wrapping_add_signed(delta.wrapping_neg());
+        }
         let size = command.saturating_abs();
         let moved = count.wrapping_sub(self.anchor).cast_signed();
         if size <= limits.level || moved.unsigned_abs() >= limits.counts {
-            self.anchor = count;
             self.ticks = 0;
             self.way = 0;
             return None;
         }
-        self.stand(limits, size)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn stand(&mut self, limits: &Limits, size: i32) -> Option<Trip> {
         self.ticks = self.ticks.saturating_add(1);
         let share = size.wrapping_shr(15).unsigned_abs();
         self.way = self.way.saturating_add(share);

@@ -17,6 +17,10 @@ pub struct Limits {
     pub standstill: i32,
     /// Ticks of rest before that counts.
     pub standstill_after: u32,
+    /// Errors up to which no limit or level can be passed in motion: made by [`Limits::with_quiet`].
+    pub quiet: i32,
+    /// The same at rest.
+    pub quiet_at_rest: i32,
 }
 
 /// What the error came to in a tick.
@@ -35,38 +39,37 @@ pub enum Verdict {
 pub struct Following {
     /// Largest error since the last reset, Q15.16 d.
     pub peak: i32,
-    rest_ticks: u32,
+    /// Last tick in which the setpoint moved. A rest of 2³² ticks begins anew.
+    moved_at: u32,
 }
 
 impl Following {
-    /// Judges the following error `error` (Q15.16 d) at a setpoint of `velocity` (Q11.20 d/tick).
-    #[inline]
-    pub fn check(&mut self, limits: &Limits, error: i32, velocity: i32, moving: bool) -> Verdict {
+    /// Takes notice of the following error `error` (Q15.16 d); true if it needs no judgement.
+    #[inline(always)]
+    pub fn is_quiet(&mut self, limits: &Limits, error: i32, is_at_rest: bool, tick: u32) -> bool {
         let size = error.saturating_abs();
         if size > self.peak {
             self.peak = size;
         }
-        self.rest_ticks = if moving || velocity != 0 {
-            0
-        } else {
-            self.rest_ticks.saturating_add(1)
-        };
-        // No limit or level is below the smaller of these two.
-        if size <= limits.warning_base() && size <= limits.standstill {
-            return Verdict::Good;
+        if !is_at_rest {
+            self.moved_at = tick;
         }
-        self.judge(limits, error, velocity)
+        size <= if is_at_rest {
+            limits.quiet_at_rest
+        } else {
+            limits.quiet
+        }
     }
 
-    #[cold]
-    #[inline(never)]
-    fn judge(&self, limits: &Limits, error: i32, velocity: i32) -> Verdict {
+    /// Judges it, at a setpoint of `velocity` (Q11.20 d/tick).
+    pub fn judge(&self, limits: &Limits, error: i32, velocity: i32, tick: u32) -> Verdict {
         let size = error.saturating_abs();
         let limit = limits.at(velocity);
         if size > limit {
             return Verdict::Fault(Trip::of_bits(Fault::FollowingError, error, limit, 16));
         }
-        if self.rest_ticks > limits.standstill_after && size > limits.standstill {
+        let rest_ticks = tick.wrapping_sub(self.moved_at);
+        if rest_ticks > limits.standstill_after && size > limits.standstill {
             let limit = limits.standstill;
             return Verdict::Fault(Trip::of_bits(Fault::MotionAtStandstill, error, limit, 16));
         }
@@ -78,8 +81,8 @@ impl Following {
     }
 
     /// Begins anew, with the peak as it is.
-    pub const fn restart(&mut self) {
-        self.rest_ticks = 0;
+    pub const fn restart(&mut self, tick: u32) {
+        self.moved_at = tick;
     }
 }
 
@@ -101,8 +104,14 @@ impl Limits {
             .wrapping_shr(15) as i32
     }
 
-    #[inline]
-    fn warning_base(&self) -> i32 {
-        self.warned(self.base)
+    /// The same with the error up to which there is nothing to judge.
+    #[must_use]
+    pub fn with_quiet(self) -> Self {
+        let quiet = self.warned(self.base);
+        Self {
+            quiet,
+            quiet_at_rest: quiet.min(self.standstill),
+            ..self
+        }
     }
 }

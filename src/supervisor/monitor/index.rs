@@ -10,8 +10,8 @@ pub struct Limits {
     pub counts_per_revolution: i32,
     /// d.
     pub tolerance: i32,
-    /// Way without an index, d; `i64::MAX` where none is watched.
-    pub within: i64,
+    /// Way without an index, d; `u32::MAX` where none is watched.
+    pub within: u32,
 }
 
 /// The monitor. Forward and backward an index has its front at different counts, so each direction has its own.
@@ -55,12 +55,17 @@ impl Index {
         None
     }
 
-    /// Judges the way since the last index.
-    #[inline]
+    /// Way since the last index, d. It is judged long before it wraps.
+    #[inline(always)]
+    pub const fn way(&self, count: i64) -> i32 {
+        (count as i32).wrapping_sub(self.last as i32)
+    }
+
+    /// Judges it.
     pub fn check(&self, limits: &Limits, count: i64) -> Option<Trip> {
-        let way = count.wrapping_sub(self.last);
-        (way.wrapping_abs() > limits.within)
-            .then(|| Trip::counted(Fault::IndexNotFound, way, limits.within))
+        let way = self.way(count);
+        (way.unsigned_abs() > limits.within)
+            .then(|| Trip::counted(Fault::IndexNotFound, way.into(), limits.within.into()))
     }
 
     /// Forgets the places of the index.

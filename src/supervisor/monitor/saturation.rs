@@ -11,19 +11,17 @@ pub struct Saturation {
 }
 
 impl Saturation {
+    /// True while the output is at its limit.
+    pub const fn is_busy(&self) -> bool {
+        self.ticks != 0
+    }
+
     /// Judges the limits that held the last output back; `limit` in ticks.
-    #[inline]
     pub fn check(&mut self, limit: u32, active: ActiveLimits) -> Option<Trip> {
         if !(active.high | active.low) || active.slew {
             self.ticks = 0;
             return None;
         }
-        self.hold(limit)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn hold(&mut self, limit: u32) -> Option<Trip> {
         self.ticks = self.ticks.saturating_add(1);
         (self.ticks > limit)
             .then(|| Trip::counted(Fault::OutputSaturated, self.ticks.into(), limit.into()))

@@ -13,19 +13,17 @@ pub struct Overspeed {
 }
 
 impl Overspeed {
+    /// True while the velocity is above the limit.
+    pub const fn is_busy(&self) -> bool {
+        self.ticks != 0
+    }
+
     /// Judges an estimated velocity; both Q11.20 d/tick.
-    #[inline]
     pub fn check(&mut self, limit: i32, velocity: i32) -> Option<Trip> {
         if velocity.saturating_abs() <= limit {
             self.ticks = 0;
             return None;
         }
-        self.exceed(limit, velocity)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn exceed(&mut self, limit: i32, velocity: i32) -> Option<Trip> {
         self.ticks = self.ticks.saturating_add(1);
         (self.ticks >= TICKS).then(|| Trip::of_bits(Fault::Overspeed, velocity, limit, 20))
     }

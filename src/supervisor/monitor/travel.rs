@@ -6,18 +6,7 @@ use crate::hal::Lines;
 
 /// Judges the switches at the setpoint's and the estimated velocity; `still` is what a standing axis may seem to
 /// have. All Q11.20 d/tick.
-#[inline]
 pub fn check(lines: &Lines, commanded: i32, estimated: i32, still: i32) -> Option<Trip> {
-    if lines.limit_low | lines.limit_high {
-        judge(lines, commanded, estimated, still)
-    } else {
-        None
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn judge(lines: &Lines, commanded: i32, estimated: i32, still: i32) -> Option<Trip> {
     let toward = |sign: i32| {
         let commanded = commanded.saturating_mul(sign);
         let estimated = estimated.saturating_mul(sign);

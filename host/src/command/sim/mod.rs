@@ -143,7 +143,9 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             _ => return error.into(),
         },
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
-        ScenarioError::Clear(_) => return error.into(),
+        ScenarioError::Planner(_) | ScenarioError::Travel(_) | ScenarioError::Refused(_) => {
+            return error.into();
+        }
         ScenarioError::NoSuchEstimator => format!("--estimator {}", args.estimator),
     };
     CommandError::Usage(format!("{blamed}: {error}"))

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use leadscrew::estimator::EstimatorConfig;
 use serde::Serialize;
 
+use crate::fault_names::fault_name;
 use crate::report::{CaptureFigures, LagFigures, figure_or_dash, text_table};
 use crate::simulation::{Accuracy, Listener, Run, RunSpec};
 use crate::statistics::Spread;
@@ -25,11 +26,45 @@ pub(super) struct Report {
     units: Units,
     following_error: FollowingError,
     estimators: BTreeMap<&'static str, EstimatorFigures>,
+    /// What stopped the axis; null where nothing did.
+    fault: Option<FaultFigures>,
     capture: CaptureFigures,
     tachogenerator: TachogeneratorFigures,
     /// Of the tachogenerator; empty if there is none.
     #[serde(skip)]
     warning: String,
+}
+
+/// The fault that stopped the axis.
+#[derive(Serialize)]
+struct FaultFigures {
+    number: u8,
+    name: &'static str,
+    at_tick: u32,
+}
+
+impl FaultFigures {
+    fn of(run: &Run) -> Option<Self> {
+        run.ticks.iter().find_map(|tick| {
+            let fault = tick.outputs.fault?;
+            Some(Self {
+                number: fault as u8,
+                name: fault_name(fault),
+                at_tick: tick.outputs.tick,
+            })
+        })
+    }
+
+    fn text(&self) -> String {
+        let Self {
+            number,
+            name,
+            at_tick,
+        } = self;
+        format!(
+            "warning: fault {number} ({name}) stopped the axis at tick {at_tick}; docs/faults.md tells why and what to do\n"
+        )
+    }
 }
 
 /// What the tachogenerator said of the encoder, by the estimator in the loop.
@@ -151,6 +186,7 @@ impl Report {
                 at_end,
             },
             estimators: run.listeners.iter().map(figures).collect(),
+            fault: FaultFigures::of(run),
             capture: run.health.into(),
             tachogenerator: (&run.watched).into(),
             warning: run.watched.warning(),
@@ -179,7 +215,7 @@ impl Report {
             "{}: {} mm at {} mm/min and back, {} Hz, {} in the loop, seed {}\n\
              {} ticks, digest {}\n\
              following error, d: peak {:.1}, rms {:.2}, at the end {:.1}\n\
-             {}rms v, rms a: rms errors over the move, ramps included, seed {}\n{}{}\n\
+             {}rms v, rms a: rms errors over the move, ramps included, seed {}\n{}{}{}\n\
              {}\n",
             self.machine,
             self.move_mm,
@@ -194,6 +230,9 @@ impl Report {
             self.following_error.at_end,
             self.tachogenerator.text(),
             self.seed,
+            self.fault
+                .as_ref()
+                .map_or_else(String::new, FaultFigures::text),
             self.capture.warnings(),
             self.warning,
             table.trim_fmt(),

@@ -9,13 +9,13 @@
 //! thread                                       requests, telemetry, log; idles in WFE
 //! ```
 //!
-//! The run is the standard move there and back. At its end the digest of all inputs and outputs is
+//! The run is the standard move there and back, or a scenario that is built in (`scenario=NAME`). At its end the digest of all inputs and outputs is
 //! logged, which is that of the host's simulation of the same run.
 //!
 //! Both timers have the same period and the tick comes [`TICK_PHASE`] of it behind the machine. Where
 //! the machine is not done by then the tick counts as late, and the run fails.
 //!
-//! Arguments: see [`leadscrew_app::options`].
+//! Arguments: `scenario=NAME`, and see [`leadscrew_app::options`].
 #![no_std]
 #![no_main]
 
@@ -37,11 +37,10 @@ use leadscrew_app::axis_control::{AxisControl, Request};
 use leadscrew_app::options::Options;
 use leadscrew_app::telemetry::{Plan, Ready};
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
-use leadscrew_hal_mock::machine::Machine;
-use leadscrew_hal_mock::scenario::Setup;
+use leadscrew_hal_mock::scenario::{Scenario, built_in};
 use static_cell::{ConstStaticCell, StaticCell};
 
-use machine::{MachineState, standard_move};
+use machine::{Job, MachineState, Panel, Plant};
 
 /// The tick's distance behind the machine step, in 1/8 of the period.
 const TICK_PHASE: u32 = 6;
@@ -50,7 +49,7 @@ const TICK_BUDGET: u32 = 1;
 /// Records that telemetry may be behind.
 const QUEUE: usize = 64;
 /// Requests that may wait.
-const REQUEST_QUEUE: usize = 4;
+const REQUEST_QUEUE: usize = 8;
 
 const PRIORITY_TICK: u8 = 0x40;
 const PRIORITY_MACHINE: u8 = 0x80;
@@ -65,8 +64,8 @@ static READY: Ready = Ready::new();
 static REFUSED: AtomicU32 = AtomicU32::new(0);
 
 struct TickState {
-    runtime: Runtime<AxisControl<Machine>>,
-    inputs: Taker<Machine>,
+    runtime: Runtime<AxisControl<Plant>>,
+    inputs: Taker<Plant>,
     outputs: Giver<Record>,
     ticks_left: u32,
 }
@@ -124,35 +123,52 @@ fn SPARE30() {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let options = options();
-    let scenario = match standard_move(&options) {
-        Ok(scenario) => scenario,
-        Err(_) => {
-            defmt::error!("the scenario does not fit the machine");
-            exit_failure()
-        }
+    let (options, scenario) = options();
+    let made = match scenario {
+        Some(scenario) => Job::scenario(scenario),
+        None => Job::standard_move(&options),
     };
-    let period = (CLOCK_HZ + options.tick_hz / 2) / options.tick_hz;
-    let ticks = options.ticks.unwrap_or(scenario.script.ticks);
+    let Ok(mut job) = made else {
+        defmt::error!("the scenario does not fit the machine");
+        exit_failure()
+    };
+    let tick_hz = job.tick_hz as u32;
+    let period = (CLOCK_HZ + tick_hz / 2) / tick_hz;
+    job.ticks = options.ticks.unwrap_or(job.ticks);
+    let ticks = job.ticks;
     time_driver::start();
-    let script = scenario.script.clone();
-    let (requests, records) = wire(scenario, period, ticks);
+    let (requests, records, panel) = wire(job, period);
     unmask_interrupts();
     let plan = Plan {
         ticks,
-        report_every: options.tick_hz,
+        report_every: tick_hz,
     };
-    spawner.spawn(thread::report(records, plan).expect("spawned once"));
-    spawner.spawn(thread::operate(requests, script).expect("spawned once"));
-    defmt::info!("axis: {=u32} ticks at {=u32} Hz", ticks, options.tick_hz);
+    let desk = match panel {
+        Panel::Script(script) => {
+            spawner.spawn(thread::operate(requests, script).expect("spawned once"));
+            None
+        }
+        Panel::Desk(desk) => Some((desk, requests)),
+    };
+    spawner.spawn(thread::report(records, plan, desk).expect("spawned once"));
+    defmt::info!("axis: {=u32} ticks at {=u32} Hz", ticks, tick_hz);
     TIMER0.start(period, period);
     TIMER1.start(period, period + period / 8 * TICK_PHASE);
 }
 
-/// Words of the command line.
-fn options() -> Options {
+/// Words of the command line, and the scenario that they name.
+fn options() -> (Options, Option<&'static Scenario<'static>>) {
     let mut options = Options::default();
+    let mut scenario = None;
     let result = arguments(|word| {
+        if let Some(name) = word.strip_prefix("scenario=") {
+            scenario = built_in(name);
+            if scenario.is_none() {
+                defmt::error!("argument {=str}: there is no such scenario", word);
+                exit_failure();
+            }
+            return Ok(());
+        }
         options
             .apply(word)
             .inspect_err(|error| defmt::error!("argument {=str}: {}", word, error))
@@ -160,38 +176,34 @@ fn options() -> Options {
     if result.is_err() {
         exit_failure();
     }
-    options
+    (options, scenario)
 }
 
 /// Hands every interrupt its state; gives the ends of the queues that thread mode holds.
-fn wire(
-    scenario: Setup<'static>,
-    period: u32,
-    ticks: u32,
-) -> (Producer<'static, Request>, Consumer<'static, Record>) {
-    static INPUTS: StaticCell<Handoff<Machine>> = StaticCell::new();
+fn wire(job: Job, period: u32) -> (Producer<'static, Request>, Consumer<'static, Record>, Panel) {
+    static INPUTS: StaticCell<Handoff<Plant>> = StaticCell::new();
     static OUTPUTS: StaticCell<Handoff<Record>> = StaticCell::new();
     static RECORDS: StaticCell<Queue<Record, QUEUE>> = StaticCell::new();
     static REQUESTS: ConstStaticCell<Queue<Request, REQUEST_QUEUE>> =
         ConstStaticCell::new(Queue::new());
 
-    let (to_tick, from_machine) = INPUTS.init(Handoff::new(scenario.machine)).split();
+    let (to_tick, from_machine) = INPUTS.init(Handoff::new(job.plant)).split();
     let (to_machine, from_tick) = OUTPUTS.init(Handoff::new(Record::default())).split();
     let (producer, consumer) = RECORDS.init(Queue::new()).split();
     let (ask, asked) = REQUESTS.take().split();
-    let control = AxisControl::new(scenario.axis, asked, &REFUSED);
+    let control = AxisControl::new(job.axis, asked, &REFUSED);
     let tick = TickState {
         runtime: Runtime::new(control, producer, &COUNTERS, period / 8 * TICK_BUDGET),
         inputs: from_machine,
         outputs: to_machine,
-        ticks_left: ticks,
+        ticks_left: job.ticks,
     };
-    let machine = MachineState::new(to_tick, from_tick);
+    let machine = MachineState::new(to_tick, from_tick, job.fate);
     assert!(
         TICK.put(tick) && MACHINE.put(machine),
         "interrupts are masked"
     );
-    (ask, consumer)
+    (ask, consumer, job.panel)
 }
 
 fn unmask_interrupts() {

@@ -5,11 +5,12 @@ use core::sync::atomic::Ordering;
 use board_mps2_an386::{exit_failure, exit_success};
 use embassy_time::{Instant, Timer};
 use heapless::spsc::{Consumer, Producer};
+use leadscrew::axis;
 use leadscrew::telemetry::Record;
-use leadscrew_app::axis_control::Request;
+use leadscrew_app::axis_control::{Request, What};
 use leadscrew_app::telemetry::{self, Plan, Sink};
 use leadscrew_app::tick::Counts;
-use leadscrew_hal_mock::scenario::Script;
+use leadscrew_hal_mock::scenario::{Desk, Order, ScenarioError, Script};
 
 use crate::{COUNTERS, MACHINE, READY, REFUSED};
 
@@ -21,15 +22,21 @@ pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
             REFUSED.store(REFUSED.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
         }
     };
-    ask(Request::Enable(true));
+    ask(Request {
+        at: 0,
+        what: What::Enable(true),
+    });
     let mut begun = 1;
     for next in script.moves {
         while COUNTERS.read().ticks < begun {
             Timer::after_millis(1).await;
         }
-        ask(Request::Move {
-            profile: next.profile,
-            start: next.start,
+        ask(Request {
+            at: begun,
+            what: What::Axis(axis::Request::Queue {
+                plan: next.profile,
+                start: next.start,
+            }),
         });
         // Not before the last setpoint of this one may another one wait.
         begun = next.start + next.profile.ticks();
@@ -38,8 +45,17 @@ pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
 
 /// Follows the records to the end of the run and ends the program.
 #[embassy_executor::task]
-pub async fn report(mut records: Consumer<'static, Record>, plan: Plan) {
-    let mut trace = Trace::default();
+pub async fn report(
+    mut records: Consumer<'static, Record>,
+    plan: Plan,
+    desk: Option<(Desk<'static>, Producer<'static, Request>)>,
+) {
+    let mut trace = Trace {
+        records: 0,
+        last: Record::default(),
+        desk,
+    };
+    trace.open();
     let counts = telemetry::run(&mut trace, &mut records, &READY, &COUNTERS, plan).await;
     defmt::info!(
         "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
@@ -73,11 +89,39 @@ pub async fn report(mut records: Consumer<'static, Record>, plan: Plan) {
     exit_failure()
 }
 
-/// Follows the records.
-#[derive(Default)]
+/// Follows the records, and asks what a scenario asks.
 struct Trace {
     records: u32,
     last: Record,
+    desk: Option<(Desk<'static>, Producer<'static, Request>)>,
+}
+
+impl Trace {
+    /// Asks what is due before the first tick.
+    fn open(&mut self) {
+        self.operate(|desk, send| desk.open(send));
+    }
+
+    fn operate(
+        &mut self,
+        work: impl FnOnce(&mut Desk<'static>, &mut dyn FnMut(Order, u32)) -> Result<(), ScenarioError>,
+    ) {
+        let Some((desk, requests)) = &mut self.desk else {
+            return;
+        };
+        let mut refused = 0;
+        let mut send = |order, at| {
+            let what = match order {
+                Order::Enable(enable) => What::Enable(enable),
+                Order::Axis(request) => What::Axis(request),
+                Order::Nothing => return,
+            };
+            refused += u32::from(requests.enqueue(Request { at, what }).is_err());
+        };
+        let planned = work(desk, &mut send);
+        refused += u32::from(planned.is_err());
+        REFUSED.store(REFUSED.load(Ordering::Relaxed) + refused, Ordering::Relaxed);
+    }
 }
 
 impl Sink for Trace {
@@ -86,6 +130,7 @@ impl Sink for Trace {
     fn record(&mut self, record: &Record) {
         self.records += 1;
         self.last = *record;
+        self.operate(|desk, send| desk.follow(record, send));
     }
 
     fn progress(&mut self, counts: &Counts) {

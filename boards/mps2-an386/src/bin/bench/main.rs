@@ -7,10 +7,12 @@
 
 mod adversary;
 mod calibration;
+mod compensation;
 mod edges;
 mod one_stamp;
 mod samples;
 mod simulator;
+mod sources;
 mod staged;
 mod standard_move;
 
@@ -40,9 +42,11 @@ fn main() -> ! {
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
     one_stamp::run(counter)?;
+    sources::run(counter)?;
     adversary::run(counter)?;
     edges::run(counter)?;
     calibration::run(counter);
+    compensation::run(counter)?;
     simulator::run(counter)
 }
 

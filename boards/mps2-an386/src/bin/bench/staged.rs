@@ -5,10 +5,11 @@ use leadscrew::capture::Unwrapper;
 use leadscrew::controller::Controller;
 use leadscrew::edges::EdgeReader;
 use leadscrew::estimator::{Estimator, EstimatorConfig, Evidence};
-use leadscrew::hal::Capture;
+use leadscrew::hal::{Capture, Lines};
 use leadscrew::output::Output;
 use leadscrew::params::AxisConfig;
 use leadscrew::setpoint::trajectory::Trajectory;
+use leadscrew::supervisor::{Permit, Review, Situation, Supervisor};
 use leadscrew_hal_mock::scenario::TimedMove;
 
 use crate::samples::Samples;
@@ -23,6 +24,7 @@ pub struct Staged {
     estimators: [Estimator; ESTIMATORS],
     trajectory: Trajectory,
     controller: Controller,
+    supervisor: Supervisor,
     output: Output,
 }
 
@@ -32,6 +34,7 @@ pub struct StageSamples {
     estimators: [Samples; ESTIMATORS],
     trajectory: Samples,
     controller: Samples,
+    supervisor: Samples,
     output: Samples,
 }
 
@@ -42,6 +45,7 @@ impl StageSamples {
             estimators: Samples::of_each(EstimatorConfig::NAMES),
             trajectory: Samples::of("trajectory"),
             controller: Samples::of("controller"),
+            supervisor: Samples::of("supervisor"),
             output: Samples::of("output"),
         }
     }
@@ -53,6 +57,7 @@ impl StageSamples {
         }
         self.trajectory.log("setpoint");
         self.controller.log("controller");
+        self.supervisor.log("supervisor");
         self.output.log("output");
     }
 }
@@ -66,6 +71,7 @@ impl Staged {
             estimators: estimators.map(Estimator::new),
             trajectory: Trajectory::new(),
             controller: Controller::new(config.controller),
+            supervisor: Supervisor::new(config.supervisor),
             output: Output::new(config.output),
         }
     }
@@ -118,6 +124,35 @@ impl Staged {
         let control = counter
             .count(|| demand = Some(self.controller.step(&setpoint, position, &estimate, active)));
         let Some(demand) = demand else { return };
+        let told = self.output.command();
+        let lines = Lines::default();
+        let mut permit = Permit::Off;
+        let before = counter.count(|| {
+            permit = self.supervisor.permit(&Situation {
+                tick,
+                enable: true,
+                lines: &lines,
+                illegal: capture.illegal,
+                missed_ticks: 0,
+                readback: Some(told),
+                told,
+            });
+        });
+        let review = Review {
+            permit,
+            tick,
+            moving: self.trajectory.is_moving(),
+            trouble: None,
+            lines: &lines,
+            observation: &observation,
+            estimate: &estimate,
+            setpoint: &setpoint,
+            following_error: demand.following_error.to_bits(),
+            told,
+            active,
+            open_loop: false,
+        };
+        let after = counter.count(|| permit = self.supervisor.review(&review));
         let output = counter.count(|| self.output.step(demand.command));
 
         if let Some(samples) = samples {
@@ -127,6 +162,7 @@ impl Staged {
             }
             samples.trajectory.push(trajectory);
             samples.controller.push(control);
+            samples.supervisor.push(before + after);
             samples.output.push(output);
         }
     }

@@ -32,6 +32,8 @@ pub(super) struct Report {
     /// Largest output, of full command.
     output_peak: f64,
     stops: Vec<StopFigures>,
+    /// Why homing failed, how far the index is from the switch, what was wrong with the spindle.
+    notes: Vec<String>,
     final_state: &'static str,
     expectations: Vec<Verdict>,
     passed: bool,
@@ -43,7 +45,7 @@ struct EventFigures {
     time_s: f64,
     /// `action`, `state`, `warning`, `fault` or `cleared`.
     event: &'static str,
-    /// Name of the action, the state or the fault.
+    /// The action as the file writes it, or the name of the state or the fault.
     name: String,
     /// Of a fault.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -210,6 +212,7 @@ impl Report {
                 .iter()
                 .map(|stop| StopFigures::new(stop, tick_hz))
                 .collect(),
+            notes: record.notes.clone(),
             final_state: state_name(figures.final_state),
             passed: expectations.iter().all(|verdict| verdict.met),
             expectations,
@@ -259,6 +262,9 @@ impl Report {
         self.stops
             .iter()
             .for_each(|stop| text.push_str(&stop.text()));
+        self.notes
+            .iter()
+            .try_for_each(|note| writeln!(text, "{note}"))?;
         text.push('\n');
         for verdict in &self.expectations {
             let word = if verdict.met { "met    " } else { "NOT MET" };
