@@ -78,7 +78,7 @@ fn the_reference_cannot_be_bettered_by_a_little() {
             assert_eq!(tuned.params, manner.found(), "{manner:?}");
         }
     }
-    let found = hand::judge(&lessons, &manner.found(), manner).unwrap();
+    let found = hand::judge(&lessons, &manner.found(), manner, f64::INFINITY).unwrap();
     let gains: [fn(&mut PidParams) -> &mut f64; 5] = [
         |params| &mut params.p,
         |params| &mut params.i,
@@ -90,7 +90,7 @@ fn the_reference_cannot_be_bettered_by_a_little() {
         for factor in [0.97, 1.03] {
             let mut params = manner.found();
             *gain(&mut params) *= factor;
-            let tried = hand::judge(&lessons, &params, manner).unwrap();
+            let tried = hand::judge(&lessons, &params, manner, f64::INFINITY).unwrap();
             assert!(
                 tried.cost > 0.97 * found.cost,
                 "{index} {factor}: {tried:?} {found:?}"
