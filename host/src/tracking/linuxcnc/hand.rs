@@ -1,9 +1,9 @@
 //! The law tuned as well as it can be: what a patient hand would find, found by a search.
 //!
 //! From a coarse grid of P, I and D the best few are refined gain by gain with ever smaller steps; what counts is the
-//! largest following error of the move on the machines that it is tuned for, with any of the five encoders. Gains by which the output oscillates at
-//! rest are no tuning. All gains have three digits, so that the search gives the constants below exactly:
-//! `leadscrew tracking --tune-linuxcnc` runs it.
+//! largest following error of the move on the machines that it is tuned for, with any of the five encoders. Gains by
+//! which the output oscillates at rest are no tuning. All gains have three digits, so that the search gives the
+//! constants below exactly: `leadscrew tracking --tune-linuxcnc` runs it.
 
 use super::PidParams;
 use super::bench::Bench;
