@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use leadscrew_host::scenario_file::actions::{ACTIONS, FOR, Spec};
+use leadscrew_host::scenario_file::actions::{ASKED, FOR, Spec, TROUBLES};
 use leadscrew_host::scenario_file::expect::{FAULT, FINAL_STATE, LIMITS, WARNING};
 use leadscrew_host::scenario_file::words::{Key, Value};
 
@@ -21,11 +21,11 @@ fn key(key: &Key) -> String {
     format!("`{}`: {}, {}{left_out}", key.name, key.what, key.allowed())
 }
 
-fn actions(text: &mut String, lasts: bool) -> std::fmt::Result {
+fn actions(text: &mut String, specs: &[Spec]) -> std::fmt::Result {
     write!(text, "\n| action | | keys |\n| --- | --- | --- |\n")?;
     for Spec {
         name, what, keys, ..
-    } in ACTIONS.iter().filter(|spec| spec.is_trouble() == lasts)
+    } in specs
     {
         let keys: Vec<_> = keys.iter().map(key).collect();
         writeln!(text, "| `{name}` | {what} | {} |", keys.join("<br>"))?;
@@ -36,13 +36,13 @@ fn actions(text: &mut String, lasts: bool) -> std::fmt::Result {
 fn tables() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     write!(text, "\n### What is asked of the axis\n")?;
-    actions(&mut text, false)?;
+    actions(&mut text, ASKED)?;
     write!(
         text,
         "\n### What goes wrong\n\nAll of these also have {}.\n",
         key(&FOR)
     )?;
-    actions(&mut text, true)?;
+    actions(&mut text, TROUBLES)?;
     write!(
         text,
         "\n## Expectations\n\n| key | unit | |\n| --- | --- | --- |\n"
