@@ -1,23 +1,26 @@
 //! Motion control of one machine-tool axis with a quadrature encoder, in fixed point.
 //!
 //! ```text
-//! setpoint ─────────────────────────┐
-//! (trajectory)                      ▼
-//!                               ┌─────────┐      ┌────────────┐     ┌────────┐
+//! setpoint ─► compensation ─────────┐
+//! (trajectory, step/dir,            ▼
+//!  gearing, thread, analog)     ┌─────────┐      ┌────────────┐     ┌────────┐
 //! encoder ─► capture ─► edges ─►│estimator│ ───► │ controller │ ──► │ output │ ──► drive ±10 V
 //!  A B Z     count +    (map)   └─────────┘      │ PID+FF     │     │ limits │
 //!  probe     edge times              │           └────────────┘     └────────┘
-//!                     tachogenerator ┴► check      telemetry ◄── every stage
+//!  home                              └──────────► supervisor (may stop everything) ──► enable, brake, faults
+//!                     tachogenerator ─► check     telemetry ◄── every stage
 //! ```
 //!
 //! Read in the order of the path: [`hal`] is the seam to a board, [`quadrature`] decodes where no
 //! hardware does, [`capture`] unwraps, [`edges`] says where the shaft was and when, by [`encoder_map`]
 //! where the encoder's own errors are known, [`estimator`] finds velocity and acceleration with their
-//! [`uncertainty`], [`setpoint`] says where to be, [`controller`] what to do about it, [`output`] limits it,
-//! [`telemetry`] tells of it. [`axis`] puts them together into one pure step; [`params`] makes its
-//! configuration from physical units, by the conversions in [`units`].
+//! [`uncertainty`], [`setpoint`] says where to be, [`compensation`] what the screw makes of it, [`controller`] what to
+//! do about it, [`output`] limits it, [`supervisor`] says whether any of it may be, [`telemetry`] tells of it. [`axis`]
+//! puts them together into one pure step; [`params`] makes its configuration from physical units, by the conversions
+//! in [`units`].
 //!
-//! Beside the path, [`tachogenerator`] checks the encoder by a second sensor. Outside the tick,
+//! Beside the path, [`homing`] finds where the axis counts from, [`identification`] what its drive does, and
+//! [`tachogenerator`] checks the encoder by a second sensor. Outside the tick, [`setpoint::planner`] plans moves,
 //! [`calibration`] learns where the encoder's edges really lie and [`tuning`] finds the loop's parameters.
 //!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:

@@ -258,6 +258,7 @@ proptest! {
                     axis.step(&Inputs::of(Capture { count, ..Capture::default() }, true));
                 }
             }
+            Err(ParamError::TravelReversed { travel_low_mm, travel_high_mm }) => prop_assert!(travel_low_mm > travel_high_mm),
             Err(error) => prop_assert!(error.to_string().contains(" is out of range: allowed "), "{}", error),
         }
     }
