@@ -17,9 +17,10 @@ use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::profile::Limits;
 use crate::setpoint::sources::{self, SourceParams};
+use crate::setpoint::travel::TravelLimits;
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
-use crate::units::{AxisScale, RangeError};
+use crate::units::{AxisScale, Position, RangeError};
 use crate::{compensation, controller, homing, output};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
@@ -75,6 +76,12 @@ parameter_table! {
         max_acceleration_m_s2: 0.9, "m/s²", 1e-6..=1e4;
         /// Largest jerk of a move
         max_jerk_m_s3: 10.0, "m/s³", 1e-6..=1e7;
+        /// Counts of the encoder from index to index; 0: it has none
+        counts_per_revolution: 10_000.0, "d", 0.0..=1e7;
+        /// Low soft limit of travel, from the origin of homing; none where it equals the high one
+        travel_low_mm: 0.0, "mm", -1e6..=1e6;
+        /// High soft limit of travel
+        travel_high_mm: 0.0, "mm", -1e6..=1e6;
     }
 }
 
@@ -100,6 +107,13 @@ pub enum ParamError {
         /// The feed at full command, mm/min.
         full_command_feed_mm_per_min: f64,
     },
+    /// The low soft limit is above the high one.
+    TravelReversed {
+        /// The low one, mm.
+        travel_low_mm: f64,
+        /// The high one, mm.
+        travel_high_mm: f64,
+    },
 }
 
 impl From<RangeError> for ParamError {
@@ -120,6 +134,14 @@ impl fmt::Display for ParamError {
                 "max_feed_mm_per_min = {max_feed_mm_per_min} is out of range: allowed 0 to {} \
                  (95 % of the {full_command_feed_mm_per_min} mm/min at full command, the rest is for control)",
                 full_command_feed_mm_per_min * MAX_FEED_SHARE
+            ),
+            Self::TravelReversed {
+                travel_low_mm,
+                travel_high_mm,
+            } => write!(
+                f,
+                "travel_low_mm = {travel_low_mm} is above travel_high_mm = {travel_high_mm}: exchange them, or set both \
+                 to 0 for no soft limits"
             ),
         }
     }
@@ -149,6 +171,8 @@ pub struct AxisConfig {
     pub supervisor: supervisor::Config,
     /// Homing.
     pub homing: homing::Config,
+    /// Soft limits of travel, from the origin of homing.
+    pub travel: Option<TravelLimits>,
     /// Sources of setpoints other than planned moves.
     pub sources: sources::Config,
 }
@@ -197,7 +221,10 @@ impl AxisParams {
             estimators,
             limits,
             compensation,
-            homing: self.homing.quantise(scale, &limits)?,
+            homing: self
+                .homing
+                .quantise(scale, &limits, self.motion.counts_per_revolution)?,
+            travel: self.motion.travel(scale)?,
             controller: LawParams {
                 controller: &self.controller,
                 filter: &self.filter,
@@ -211,6 +238,7 @@ impl AxisParams {
                 scale,
                 full_velocity,
                 scale.velocity_from_feed(self.motion.max_feed_mm_per_min)?,
+                self.motion.counts_per_revolution,
             )?,
         })
     }
@@ -235,6 +263,27 @@ impl MotionParams {
             scale.acceleration_from_m_s2(self.max_acceleration_m_s2),
             scale.jerk_from_m_s3(self.max_jerk_m_s3),
         )?)
+    }
+}
+
+impl MotionParams {
+    /// Soft limits of travel from the origin; none where both are the same.
+    fn travel(&self, scale: AxisScale) -> Result<Option<TravelLimits>, ParamError> {
+        let Self {
+            travel_low_mm,
+            travel_high_mm,
+            ..
+        } = *self;
+        if travel_low_mm == travel_high_mm {
+            return Ok(None);
+        }
+        let place = |mm| Position::saturating_from_num(scale.counts_from_mm(mm));
+        TravelLimits::new(place(travel_low_mm), place(travel_high_mm))
+            .map(Some)
+            .map_err(|_| ParamError::TravelReversed {
+                travel_low_mm,
+                travel_high_mm,
+            })
     }
 }
 

@@ -2,31 +2,33 @@
 
 mod experiment;
 mod io;
+mod place;
 mod planned;
 mod reconfigure;
 mod request;
-mod requests;
+mod sources;
+
+use place::loses_place;
 
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 pub use request::{Refused, Request};
 
-use crate::capture::{CaptureHealth, Observation, Unwrapper};
-use crate::compensation::{Compensation, ScrewTable, TableRefused};
+use crate::capture::{CaptureHealth, Unwrapper};
+use crate::compensation::Compensation;
 use crate::controller::Controller;
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
-use crate::homing::{HomeRefused, Homing, Sight};
+use crate::homing::Homing;
 use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
 use crate::params::AxisConfig;
-use crate::setpoint::Setpoint;
 use crate::setpoint::sources::Sources;
-use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, State, Supervisor};
+use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervisor};
 use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map and its screw table live.
@@ -178,10 +180,9 @@ impl<'m> Axis<'m> {
         outputs.refused = self.supervisor.is_refused();
         let is_index_right = self.homing.check_index(&observation);
         if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
-            self.homing.lose_origin();
-            self.compensation.set_origin(None);
-            self.sources.set_travel(None);
+            self.lose_place();
         }
+        let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);
         outputs
     }
@@ -232,51 +233,6 @@ impl<'m> Axis<'m> {
         &mut self.supervisor
     }
 
-    /// A tick of homing, or its end where it may not go on: the sources go on from there.
-    #[cold]
-    fn step_homing(
-        &mut self,
-        observation: &Observation<'_>,
-        inputs: &Inputs<'_>,
-        permit: Permit,
-    ) -> Setpoint {
-        if permit < Permit::Follow {
-            self.homing.abort();
-            return self
-                .sources
-                .step(self.tick.wrapping_sub(1), &inputs.reference, permit);
-        }
-        let setpoint = self.homing.step(&Sight {
-            observation,
-            lines: &inputs.lines,
-            index_error: self.edges.index_error(observation),
-        });
-        self.sources.take_over(&setpoint);
-        self.compensation.set_origin(self.homing.origin());
-        setpoint
-    }
-
-    /// Begins homing with the next tick. The origin of before is given up, and with it, by its slew, the
-    /// compensation of the screw.
-    ///
-    /// # Errors
-    /// [`HomeRefused`] unless the axis is ready and at rest.
-    pub fn home(&mut self) -> Result<(), HomeRefused> {
-        if self.outputs.state != State::Ready || self.outputs.moving {
-            return Err(HomeRefused::NotReady);
-        }
-        self.homing.start(self.sources.last(), self.outputs.count);
-        self.compensation.set_origin(None);
-        self.sources.set_travel(None);
-        Ok(())
-    }
-
-    /// Homing: where it stands, what it found, and why it failed.
-    #[must_use]
-    pub const fn homing(&self) -> &Homing {
-        &self.homing
-    }
-
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
     /// the controller's transfer term; another estimator starts as after a long motion at the velocity
     /// estimated last. The encoder map stays.
@@ -302,7 +258,11 @@ impl<'m> Axis<'m> {
         self.sources.reconfigure(&config.limits, &config.sources);
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
+        let is_travel_new = config.travel != self.config.travel;
         self.config = config;
+        if is_travel_new {
+            self.count_from(self.homing.origin());
+        }
         Ok(())
     }
 
@@ -310,28 +270,6 @@ impl<'m> Axis<'m> {
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
-    }
-
-    /// Takes a screw error table between two ticks, or does without. It comes into force by the compensation's slew as
-    /// soon as an origin is known.
-    ///
-    /// # Errors
-    /// [`TableRefused`] if the compensation cannot follow it at the largest feed; the one before stays.
-    pub fn set_screw_table(&mut self, table: Option<ScrewTable<'m>>) -> Result<(), TableRefused> {
-        self.compensation.set_table(table)
-    }
-
-    /// The compensation of the screw, and the origin that it counts from.
-    #[must_use]
-    pub const fn compensation(&self) -> &Compensation<'m> {
-        &self.compensation
-    }
-
-    /// The raw position of the zero of machine coordinates becomes known, or is lost, between two ticks: for an axis
-    /// whose place is known without homing. The loop goes on as it was.
-    pub fn set_origin(&mut self, origin: Option<Position>) {
-        self.homing.set_origin(origin);
-        self.compensation.set_origin(origin);
     }
 
     /// How far the encoder map can be used; `None` without one.
@@ -375,15 +313,4 @@ impl<'m> Axis<'m> {
     pub const fn capture_health(&self) -> CaptureHealth {
         self.unwrapper.health()
     }
-}
-
-/// True for a fault after which the count may not tell the place any more.
-const fn loses_place(fault: Fault) -> bool {
-    matches!(
-        fault,
-        Fault::SignalLoss
-            | Fault::IllegalTransitions
-            | Fault::IndexInconsistent
-            | Fault::EncoderLoss
-    )
 }

@@ -21,8 +21,6 @@ parameter_table! {
         max_search_mm: 1200.0, "mm", 0.01..=1e6;
         /// Longest time of the whole homing
         max_time_s: 180.0, "s", 0.1..=3600.0;
-        /// Counts of the encoder from index to index
-        counts_per_revolution: 10_000.0, "d", 16.0..=10_000_000.0;
         /// Coordinate of the index at which the axis is homed
         home_position_mm: 0.0, "mm", -1e6..=1e6;
     }
@@ -57,11 +55,17 @@ pub struct Config {
 }
 
 impl HomingParams {
-    /// The configuration for motion within `limits`.
+    /// The configuration for motion within `limits` and an encoder with an index every `counts_per_revolution` d (0:
+    /// none, and no homing).
     ///
     /// # Errors
     /// [`RangeError`] for a parameter, or what it comes to in d and ticks, out of range.
-    pub fn quantise(&self, scale: AxisScale, limits: &Limits) -> Result<Config, RangeError> {
+    pub fn quantise(
+        &self,
+        scale: AxisScale,
+        limits: &Limits,
+        counts_per_revolution: f64,
+    ) -> Result<Config, RangeError> {
         self.check()?;
         // Defaults must do for any axis: a search is never faster than the axis, nor does it stand.
         let feed = |feed_mm_per_min| -> Result<Velocity, RangeError> {
@@ -73,7 +77,7 @@ impl HomingParams {
         };
         let direction = if self.search_direction < 0.0 { -1 } else { 1 };
         let way = |way_mm| libm::ceil(scale.counts_from_mm(way_mm)) as i64;
-        let revolution = libm::round(self.counts_per_revolution);
+        let revolution = libm::round(counts_per_revolution);
         let (earliest, latest) = INDEX_SHARES;
         Ok(Config {
             direction,
@@ -98,6 +102,11 @@ impl HomingParams {
 }
 
 impl Config {
+    /// True if the encoder has an index to home to.
+    pub(crate) const fn has_index(&self) -> bool {
+        self.revolution > 0
+    }
+
     /// `count` in the direction of the search.
     pub(super) const fn onward(&self, count: i64) -> i64 {
         count.wrapping_mul(self.direction)

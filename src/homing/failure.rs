@@ -70,13 +70,20 @@ impl core::error::Error for HomingFailure {}
 pub enum HomeRefused {
     /// The axis is not under control, or in motion.
     NotReady,
+    /// The encoder has no index.
+    NoIndex,
 }
 
 impl fmt::Display for HomeRefused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "the axis is not ready: enable it, clear faults and let it come to rest, then home it",
-        )
+        f.write_str(match self {
+            Self::NotReady => {
+                "the axis is not ready: enable it, clear faults and let it come to rest, then home it"
+            }
+            Self::NoIndex => {
+                "there is no index to home to: set counts_per_revolution to the counts from index to index"
+            }
+        })
     }
 }
 

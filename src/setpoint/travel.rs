@@ -52,6 +52,15 @@ impl TravelLimits {
         }
     }
 
+    /// The same limits seen from where 0 is `origin`.
+    #[must_use]
+    pub const fn from_origin(&self, origin: Position) -> Self {
+        Self {
+            low: self.low.saturating_add(origin),
+            high: self.high.saturating_add(origin),
+        }
+    }
+
     /// The low limit, d.
     #[must_use]
     pub const fn low(&self) -> Position {

@@ -43,9 +43,7 @@ parameter_table! {
         illegal_limit: 10.0, "transitions", 0.0..=1e9;
         /// Illegal transitions forgiven
         illegal_forgiven_per_s: 10.0, "1/s", 0.001..=1e5;
-        /// Counts between two indexes; 0: there is none to watch
-        counts_per_revolution: 0.0, "d", 0.0..=1e9;
-        /// Counts that they may be off
+        /// Counts between two indexes may be so far off from whole revolutions
         index_tolerance_d: 2.0, "d", 0.0..=1e6;
         /// Way in which an index must come
         index_within_revolutions: 1.25, "revolutions", 1.01..=1000.0;
@@ -104,7 +102,7 @@ impl SupervisorParams {
     }
 
     /// Checks and quantises, for an axis with a full-command speed of `full_velocity` and a largest velocity of
-    /// `max_velocity`, d/tick.
+    /// `max_velocity`, d/tick, whose encoder has an index every `counts_per_revolution` d (0: none).
     ///
     /// # Errors
     /// [`RangeError`] for the first parameter that is out of range.
@@ -113,6 +111,7 @@ impl SupervisorParams {
         scale: AxisScale,
         full_velocity: f64,
         max_velocity: f64,
+        counts_per_revolution: f64,
     ) -> Result<Config, RangeError> {
         self.check()?;
         let d = |mm: f64| scale.counts_from_mm(mm);
@@ -121,7 +120,7 @@ impl SupervisorParams {
         let q16 = |value: f64| libm::round(value * 65_536.0) as i32;
         let share = |share: f64| Command::saturating_from_num(share).to_bits();
         let velocity = |value: f64| Velocity::saturating_from_num(value).to_bits();
-        let revolution = libm::round(self.counts_per_revolution);
+        let revolution = libm::round(counts_per_revolution);
         let overspeed = self.overspeed_share * max_velocity + 0.05 * full_velocity;
         Ok(Config {
             following: following::Limits {

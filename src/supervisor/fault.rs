@@ -144,7 +144,7 @@ faults! {
     }
     /// Counts between two indexes are not those of a revolution.
     IndexInconsistent = 7, ControlledStop {
-        condition: "Counts between two indexes passed in the same direction that are off from whole revolutions by more than `index_tolerance_d`. Not watched with `counts_per_revolution` 0.",
+        condition: "Counts between two indexes passed in the same direction that are off from whole revolutions by more than `index_tolerance_d`. Not watched with `counts_per_revolution` 0 (section `motion`).",
         bound: "one revolution of the encoder in one direction",
         figure: "counts off whole revolutions, d",
         cause: "False or lost edges: interference, a channel near its limit of frequency; wrong counts per revolution; a slipping coupling.",

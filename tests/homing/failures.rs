@@ -3,11 +3,14 @@
 use leadscrew::homing::{HomeRefused, HomingFailure, HomingParams};
 use leadscrew::supervisor::Fault;
 
-use crate::rig::{Rig, Switches, real};
+use crate::rig::{Rig, Switches, axis_params, real};
 
 /// Runs until homing ends; its failure, the fault, and the ticks it took.
 fn fails(homing: HomingParams, switches: Switches) -> (HomingFailure, Fault, usize) {
-    let mut rig = Rig::new(&real(), homing, switches, 1);
+    failure_of(Rig::new(&real(), homing, switches, 1))
+}
+
+fn failure_of(mut rig: Rig) -> (HomingFailure, Fault, usize) {
     rig.run(200);
     rig.axis.home().unwrap();
     let mut trouble = None;
@@ -85,12 +88,12 @@ fn an_axis_that_is_too_slow_runs_out_of_time() {
 
 #[test]
 fn an_encoder_without_index_is_searched_for_1_1_revolutions() {
-    // A revolution said to be so short that the index is a whole disc away.
-    let homing = HomingParams {
-        counts_per_revolution: 4000.0,
-        ..HomingParams::default()
-    };
-    let (failure, fault, _) = fails(homing, Switches::at(33_000.0));
+    let mut params = axis_params(&real(), HomingParams::default());
+    // Else the supervisor misses the index on the way to the switch.
+    params.supervisor.index_within_revolutions = 10.0;
+    let mut rig = Rig::with_axis(&real(), &params, Switches::at(33_000.0), 1);
+    rig.has_index = false;
+    let (failure, fault, _) = failure_of(rig);
     assert_eq!(
         (failure, fault),
         (HomingFailure::IndexNotFound, Fault::IndexNotFound)
@@ -137,4 +140,13 @@ fn homing_is_refused_unless_the_axis_is_ready_at_rest() {
     rig.axis.home().unwrap();
     rig.step();
     assert_eq!(rig.axis.home(), Err(HomeRefused::NotReady));
+}
+
+#[test]
+fn an_encoder_said_to_have_no_index_is_not_homed() {
+    let mut params = axis_params(&real(), HomingParams::default());
+    params.motion.counts_per_revolution = 0.0;
+    let mut rig = Rig::with_axis(&real(), &params, Switches::at(33_000.0), 1);
+    rig.run(200);
+    assert_eq!(rig.axis.home(), Err(HomeRefused::NoIndex));
 }

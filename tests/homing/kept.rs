@@ -107,3 +107,22 @@ fn homing_itself_disturbs_the_loop_no_more_than_the_same_motion_without_a_coordi
     }
     assert!(apart > 1000, "the coordinates differ in {apart} ticks");
 }
+
+#[test]
+fn soft_limits_count_from_the_origin_as_soon_as_it_is_known() {
+    let mut params = axis_params(&real(), HomingParams::default());
+    params.motion.travel_low_mm = -60.0;
+    params.motion.travel_high_mm = 10.0;
+    let mut rig = Rig::with_axis(&real(), &params, Switches::at(33_000.0), 1);
+    rig.run(200);
+    assert_eq!(rig.axis.travel(), None);
+    rig.axis.home().unwrap();
+    while rig.step().moving {}
+    let limits = params.validate().unwrap().travel.unwrap();
+    assert_eq!(
+        rig.axis.travel(),
+        Some(limits.from_origin(Position::from_num(rig.origin().unwrap())))
+    );
+    rig.axis.set_origin(None);
+    assert_eq!(rig.axis.travel(), None);
+}

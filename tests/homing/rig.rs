@@ -34,6 +34,8 @@ pub struct Rig {
     pub switches: Switches,
     /// Whether the hardware latches the switch, or only its level is seen.
     pub latches: bool,
+    /// Whether the encoder's index is connected.
+    pub has_index: bool,
     /// What the lines show besides the switches.
     pub lines: Lines,
     was_home: bool,
@@ -71,6 +73,7 @@ impl Rig {
             outputs: Outputs::default(),
             switches,
             latches: true,
+            has_index: true,
             lines: Lines::default(),
             was_home: true,
         }
@@ -92,6 +95,9 @@ impl Rig {
             });
         }
         self.was_home = home;
+        if !self.has_index {
+            capture.index = None;
+        }
         let lines = Lines {
             home,
             limit_low: shaft < self.switches.limits.0,

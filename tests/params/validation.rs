@@ -275,3 +275,23 @@ fn fill<T: ParameterTable>(table: &mut T, shares: &mut impl Iterator<Item = f64>
         (field.set)(table, default + room * share.powi(3));
     }
 }
+
+#[test]
+fn soft_limits_the_wrong_way_round_are_told() {
+    let mut params = defaults();
+    params.motion.travel_low_mm = 10.0;
+    params.motion.travel_high_mm = -10.0;
+    let message = params.validate().unwrap_err().to_string();
+    assert!(
+        message.contains("travel_low_mm = 10 is above travel_high_mm = -10"),
+        "{message}"
+    );
+    params.motion.travel_high_mm = 20.0;
+    let travel = params.validate().unwrap().travel.unwrap();
+    assert_eq!(
+        (travel.low().to_num::<f64>(), travel.high().to_num::<f64>()),
+        (10_000.0, 20_000.0)
+    );
+    params.motion.travel_high_mm = 10.0;
+    assert_eq!(params.validate().unwrap().travel, None);
+}

@@ -17,7 +17,7 @@ impl Pushed {
         let mut params = Plan::full().axis_params();
         // A loop without gains lets itself be pushed.
         params.controller = Default::default();
-        params.supervisor.counts_per_revolution = 0.0;
+        params.motion.counts_per_revolution = 0.0;
         change(&mut params);
         Self {
             axis: Axis::new(params.validate().unwrap()),

@@ -58,7 +58,7 @@ fn lost_and_doubled_edges_are_found_within_a_revolution() {
 fn a_missing_index_is_found_after_a_revolution_and_a_quarter() {
     let mut plan = Plan::full();
     // The encoder has one in 10 000.
-    plan.supervisor.counts_per_revolution = 4000.0;
+    plan.counts_per_revolution = 4000.0;
     let mut rig = plan.rig();
     rig.run(100);
     rig.go(300.0);

@@ -18,6 +18,7 @@ pub struct Plan {
     pub machine: MachineParams,
     pub board: BoardParams,
     pub supervisor: SupervisorParams,
+    pub counts_per_revolution: f64,
     pub estimator: &'static str,
     pub tick_hz: f64,
     pub output_limit: f64,
@@ -30,10 +31,8 @@ impl Plan {
         Self {
             machine: MachineParams::z_16k20f3(),
             board: BoardParams::default(),
-            supervisor: SupervisorParams {
-                counts_per_revolution: 10_000.0,
-                ..SupervisorParams::default()
-            },
+            supervisor: SupervisorParams::default(),
+            counts_per_revolution: 10_000.0,
             estimator: "simple",
             tick_hz: 1000.0,
             output_limit: 1.0,
@@ -51,6 +50,7 @@ impl Plan {
         let estimator = scenario.tuned(&nominal, estimator, false).unwrap();
         let mut params = scenario.axis_params(&nominal, estimator).unwrap();
         params.supervisor = self.supervisor;
+        params.motion.counts_per_revolution = self.counts_per_revolution;
         params.output.limit = self.output_limit;
         params
     }

@@ -26,8 +26,9 @@ fn the_relay_finds_the_ultimate_gain_of_a_drive_that_is_known() {
     );
 }
 
-/// Velocity alone, fed forward, keeps up at constant speed but for what the drive lags: on the bare machine
-/// 2ζ/ω_n of the speed, which is what FF2 takes off while it accelerates.
+/// On the bare machine at the acceleration a the drive is 2ζ/ω_n·a slower than it should be; a loop of P = 10/s lets
+/// that grow with a time constant of 100 ticks to a hundred times as many d: in 200 ticks of 0.5 d/tick² to 619 d. FF2
+/// takes it off and leaves what a step of acceleration lacks in jerk, a/ω_n² = 103 d.
 #[test]
 fn feedforward_of_acceleration_takes_off_the_drive_s_lag() {
     let scene = Scene::bare();
@@ -56,7 +57,8 @@ fn feedforward_of_acceleration_takes_off_the_drive_s_lag() {
     };
     let lag = scene.nominal.drive.natural_period_s / std::f64::consts::TAU;
     let (without, with) = (peak(0.0), peak(lag));
-    assert!(without > 500.0 && with < 0.1 * without, "{without} {with}");
+    assert!((without / 619.0 - 1.0).abs() < 0.1, "{without}");
+    assert!((with / 103.0 - 1.0).abs() < 0.1, "{with}");
 }
 
 #[test]
@@ -78,7 +80,7 @@ fn the_reference_cannot_be_bettered_by_a_little() {
             assert_eq!(tuned.params, manner.found(), "{manner:?}");
         }
     }
-    let found = hand::judge(&lessons, &manner.found(), manner).unwrap();
+    let found = hand::judge(&lessons, &manner.found(), manner, f64::INFINITY).unwrap();
     let gains: [fn(&mut PidParams) -> &mut f64; 5] = [
         |params| &mut params.p,
         |params| &mut params.i,
@@ -90,9 +92,9 @@ fn the_reference_cannot_be_bettered_by_a_little() {
         for factor in [0.97, 1.03] {
             let mut params = manner.found();
             *gain(&mut params) *= factor;
-            let tried = hand::judge(&lessons, &params, manner).unwrap();
+            let tried = hand::judge(&lessons, &params, manner, 0.97 * found.cost).unwrap();
             assert!(
-                tried.cost > 0.97 * found.cost,
+                tried.cost >= 0.97 * found.cost,
                 "{index} {factor}: {tried:?} {found:?}"
             );
         }

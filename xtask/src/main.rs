@@ -72,6 +72,10 @@ fn golden_tables() -> Result<()> {
         ])
         .env("INSTA_UPDATE", "always")
         .run()?;
+    command::cargo(["test", "--package", "leadscrew-host"])
+        .words(&["--test", "scenarios", "documents"])
+        .env("INSTA_UPDATE", "always")
+        .run()?;
     bench::run(true)
 }
 

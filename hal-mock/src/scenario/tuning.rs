@@ -50,6 +50,7 @@ pub fn tuned_axis(
             counts_per_mm: machine.mount.counts_per_mm,
             full_command_feed_mm_per_min: machine.drive.full_command_feed_mm_per_min,
             max_feed_mm_per_min,
+            counts_per_revolution: machine.encoder.disc.edges_per_revolution,
             ..MotionParams::default()
         },
         controller: drive.place_poles(bandwidth_rad_per_s)?,

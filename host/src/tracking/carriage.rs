@@ -1,9 +1,12 @@
 //! The carriage before and after compensation: backlash of variant (a) and the screw's error.
 
+use leadscrew::estimator::{EstimatorConfig, simple};
+use leadscrew_hal_mock::scenario::{BANDWIDTH_RAD_PER_S, tuned_axis};
+
 use super::error::TrackingError;
 use super::figures::{CarriageRow, Judged};
 use super::ours::tuned_on;
-use super::scene::Scene;
+use super::scene::{Scene, TICK_HZ};
 use crate::parallel;
 use crate::screw::{BeforeAndAfter, ScrewCase, ScrewFailure};
 
@@ -14,6 +17,8 @@ const REVERSAL: f64 = 1.0;
 const TRAVEL_MM: f64 = 300.0;
 const POINTS: usize = 256;
 const SETTLE_S: f64 = 0.6;
+/// Largest feed of the axis that counts, mm/min.
+const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
 /// What draws the machine's errors.
 const SEED: u64 = 1;
 
@@ -23,24 +28,33 @@ pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
     let full = outside.nominal;
     let mut bare = Scene::bare().nominal;
     bare.carriage = full.carriage;
-    let done = parallel::map(
-        &[("bare drive", bare), ("full", full)],
-        |(name, machine)| {
-            let case = ScrewCase {
-                machine: *machine,
-                axis: tuned_on(machine)?.0,
-                seed: SEED,
-                travel_mm: TRAVEL_MM,
-                points: POINTS,
-                settle_s: SETTLE_S,
-            };
-            Ok(match case.run() {
-                Ok(figures) => CarriageRow::new(name, &figures),
-                Err(failure) => CarriageRow::refused(name, &failure),
-            })
-        },
-    );
-    done.into_iter().collect()
+    let counting = EstimatorConfig::Simple(simple::Config::new(15)?);
+    let counting = tuned_axis(
+        &bare,
+        TICK_HZ,
+        MAX_FEED_MM_PER_MIN,
+        BANDWIDTH_RAD_PER_S,
+        counting,
+    )?;
+    let cases = [
+        ("bare drive, loop on the count", bare, counting),
+        ("full, autotuned", full, tuned_on(&full)?.0),
+    ];
+    let done = parallel::map(&cases, |(name, machine, axis)| {
+        let case = ScrewCase {
+            machine: *machine,
+            axis: *axis,
+            seed: SEED,
+            travel_mm: TRAVEL_MM,
+            points: POINTS,
+            settle_s: SETTLE_S,
+        };
+        match case.run() {
+            Ok(figures) => CarriageRow::new(name, &figures),
+            Err(failure) => CarriageRow::refused(name, &failure),
+        }
+    });
+    Ok(done)
 }
 
 impl CarriageRow {

@@ -31,7 +31,7 @@ Creep of 0.0167 d/tick, 18 s: largest error to the line after the first second, 
 ";
 
 const CARRIAGE_LEGEND: &str = "\
-The carriage over 300 mm as a laser sees it, 3 d of backlash outside the loop, seed 1: largest errors before and after
+The carriage over 300 mm as a laser sees it, 3 d of backlash outside the loop, seed 1, no map: largest errors before and after
 compensation by a table of 256 points both ways, at targets between them; backlash: mean reversal with the backlash as a
 parameter alone; standing: what the servo leaves at rest.
 ";

@@ -24,6 +24,7 @@ fn help_names_every_option_its_unit_and_its_default() {
     assert_says(
         &sim,
         &[
+            "--scenario",
             "--machine",
             "16k20f3-bare",
             "--move-mm",

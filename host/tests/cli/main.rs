@@ -16,6 +16,7 @@ mod replay_estimator;
 mod replay_faults;
 mod replay_map;
 mod replay_options;
+mod scenarios;
 mod scenes;
 mod sigrok;
 mod sim;

@@ -124,6 +124,7 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             }
             _ => return error.into(),
         },
+        ScenarioError::Param(ParamError::TravelReversed { .. }) => return error.into(),
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
         ScenarioError::Planner(_) | ScenarioError::Travel(_) | ScenarioError::Refused(_) => {
             return error.into();

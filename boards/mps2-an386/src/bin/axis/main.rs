@@ -136,8 +136,9 @@ async fn main(spawner: Spawner) {
     let period = (CLOCK_HZ + tick_hz / 2) / tick_hz;
     job.ticks = options.ticks.unwrap_or(job.ticks);
     let ticks = job.ticks;
-    time_driver::start();
     let (requests, records, panel) = wire(job, period);
+    // A plant with its troubles takes a while to be put in its place.
+    time_driver::start();
     unmask_interrupts();
     let plan = Plan {
         ticks,

@@ -98,23 +98,24 @@ fn marks(panel: &Panel, file: &ScenarioFile, record: &Record, events: &[Event]) 
     let kinds = [
         (
             "action",
-            Colour::Grey,
+            (Colour::Grey, 1.5),
             lines(&|what| matches!(what, What::Action(index, _) if !is_trouble(index))),
         ),
         (
             "trouble",
-            Colour::Orange,
+            // A fault in the same tick is seen on it.
+            (Colour::Orange, 4.5),
             lines(&|what| matches!(what, What::Action(index, _) if is_trouble(index))),
         ),
         (
             "fault",
-            Colour::Vermillion,
+            (Colour::Vermillion, 1.5),
             lines(&|what| matches!(what, What::Fault(_))),
         ),
     ];
     kinds
         .into_iter()
         .filter(|(_, _, points)| !points.is_empty())
-        .map(|(name, colour, points)| Series::line(name, points, colour).with_width(1.5))
+        .map(|(name, (colour, width), points)| Series::line(name, points, colour).with_width(width))
         .collect()
 }
