@@ -1,10 +1,12 @@
 //! Parameters of an axis as TOML files, a section for each of their tables.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::Path;
 
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
+use leadscrew::estimator::paths::PositionFeedback;
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{AxisParams, SectionVisitor};
 use leadscrew::units::{AxisScale, TICK_HZ, TIMER_HZ};
@@ -16,7 +18,12 @@ use crate::machine_file::{fill_sections, section};
 use crate::toml_file::{self, Complaint, TomlFileError, plain_number, suggestion};
 
 /// Keys above the sections.
-const KEYS: [&str; 3] = ["tick_hz", "timer_hz", "estimator"];
+const KEYS: [&str; 4] = ["tick_hz", "timer_hz", "estimator", "position"];
+/// What the loop takes for the position, by name.
+const POSITIONS: [(&str, PositionFeedback); 2] = [
+    ("count", PositionFeedback::Count),
+    ("estimate", PositionFeedback::Estimate),
+];
 /// The estimator of a file that names none.
 const DEFAULT_ESTIMATOR: &str = "exponential";
 
@@ -40,7 +47,7 @@ pub fn read(path: &Path) -> Result<AxisFile, TomlFileError> {
 fn parse(text: &str) -> Result<AxisFile, Complaint> {
     let document = toml_file::document(text)?;
     let document = document.get_ref();
-    let (name, at) = estimator_name(document)?;
+    let (name, at) = name_at(document, KEYS[2], DEFAULT_ESTIMATOR, EstimatorConfig::NAMES)?;
     let estimator = match EstimatorConfig::by_name(name) {
         Ok(Some(estimator)) => estimator,
         _ => {
@@ -61,6 +68,15 @@ fn parse(text: &str) -> Result<AxisFile, Complaint> {
             *place = rate(key, value, low, high)?;
         }
     }
+    let names = POSITIONS.map(|(name, _)| name);
+    let (position, position_at) = name_at(document, KEYS[3], names[0], &names)?;
+    let found = POSITIONS.iter().find(|(name, _)| *name == position);
+    let Some((_, position)) = found else {
+        let known = suggestion(position, names);
+        let message = format!("unknown position `{position}`{known}");
+        return Err(Complaint::new(position_at, message));
+    };
+    file.axis.paths.position = *position;
     let sections = sections(&mut file.axis);
     fill_sections(document, &sections, &KEYS, |name, fill| {
         if name == OBSERVER {
@@ -84,15 +100,19 @@ fn observer_of(file: &AxisFile) -> Result<EstimatorConfig, leadscrew::units::Ran
     observer::Config::new(&file.observer, scale).map(EstimatorConfig::Observer)
 }
 
-fn estimator_name<'a>(
+/// The name that `key` gives, else `default`, and where it stands.
+fn name_at<'a>(
     document: &'a DeTable<'_>,
-) -> Result<(&'a str, std::ops::Range<usize>), Complaint> {
-    let Some(value) = document.get(KEYS[2]) else {
-        return Ok((DEFAULT_ESTIMATOR, 0..0));
+    key: &str,
+    default: &'a str,
+    known: &[&str],
+) -> Result<(&'a str, Range<usize>), Complaint> {
+    let Some(value) = document.get(key) else {
+        return Ok((default, 0..0));
     };
     let found = value.get_ref().as_str().ok_or_else(|| {
-        let known = EstimatorConfig::NAMES.join(", ");
-        let message = format!("estimator must be a name in quotes: one of {known}");
+        let known = known.join(", ");
+        let message = format!("{key} must be a name in quotes: one of {known}");
         Complaint::new(value.span(), message)
     })?;
     Ok((found, value.span()))
@@ -151,6 +171,17 @@ pub fn dump(file: &AxisFile) -> String {
         KEYS[2],
         axis.estimator.name()
     );
+    let position = axis.paths.position;
+    let [name, other] = POSITIONS.map(|(name, is)| (name, is == position));
+    let _ = writeln!(
+        text,
+        "# Position in the loop: the middle of the count, or the estimator's, which is to have no lag ({} or {})\n\
+         {} = \"{}\"",
+        name.0,
+        other.0,
+        KEYS[3],
+        if other.1 { other.0 } else { name.0 }
+    );
     let mut dump = Dump(text);
     axis.visit_sections(&mut dump);
     if matches!(axis.estimator, EstimatorConfig::Observer(_)) {
@@ -176,6 +207,7 @@ mod tests {
             if matches!(file.axis.estimator, EstimatorConfig::Observer(_)) {
                 file.observer.natural_period_s = 0.1;
                 file.axis.estimator = observer_of(&file).expect("an observer");
+                file.axis.paths.position = PositionFeedback::Estimate;
             }
             let text = dump(&file);
             let read = parse(&text).map_err(|complaint| complaint.message);
@@ -189,6 +221,7 @@ mod tests {
             ("tick_hz = 1", "100 to 40000"),
             ("estimator = \"obsrver\"", "did you mean `observer`?"),
             ("estimator = 3", "a name in quotes"),
+            ("position = \"edge\"", "expected one of count, estimate"),
             ("[controler]", "did you mean `controller`?"),
             ("[motion]\ncounts_per_mm = \"x\"", "must be a number"),
             ("motion = 1", "is a section"),

@@ -43,6 +43,8 @@ pub enum Command {
     Accuracy(AccuracyArgs),
     /// Finds out by small experiments what a simulated machine's drive does, beginning with its sign
     Identify(IdentifyArgs),
+    /// Identifies a simulated machine's drive and offers the parameters of a loop for it
+    Autotune(AutotuneArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
 }
@@ -59,6 +61,28 @@ pub struct IdentifyArgs {
     /// Draw measured and modelled velocity and their difference in position to FILE.svg or FILE.png
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `autotune`.
+#[derive(Debug, Args)]
+pub struct AutotuneArgs {
+    /// The machine, and within what it may be moved
+    #[command(flatten)]
+    pub bench: BenchArgs,
+    /// Largest feed of the axis, mm/min, at most 95 % of what is identified at full command
+    #[arg(
+        long,
+        value_name = "MM_PER_MIN",
+        default_value_t = 9000.0,
+        allow_negative_numbers = true
+    )]
+    pub max_feed: f64,
+    /// Write the parameters that are offered to FILE; without it they are only shown
+    #[arg(long, value_name = "FILE.toml")]
+    pub out: Option<PathBuf>,
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// A simulated machine that is to be identified.

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::{
-    accuracy, calibrate_encoder, demo, identify, replay, sim, sim_encoder, tracking, tune_filter,
+    accuracy, autotune, calibrate_encoder, demo, identify, replay, sim, sim_encoder, tracking,
+    tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
         Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Tracking(args)) => tracking::run(&args),
         Some(Command::Identify(args)) => identify::run(&args),
+        Some(Command::Autotune(args)) => autotune::run(&args),
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
     };
     match done {

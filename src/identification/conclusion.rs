@@ -1,10 +1,10 @@
 //! From the records of the main experiments to figures with their uncertainty.
 
 use super::drive::{NO_LIMIT, Vector, converted, place};
+use super::evidence::{Broke, broken_away_after};
 use super::fit::{Fit, Problem};
 use super::identified::{Figure, Identified, LargestAcceleration};
 use super::matrix::{part, set};
-use super::procedure::{Broke, broken_away_after};
 use super::recorder::Records;
 use super::seed;
 use crate::units::AxisScale;

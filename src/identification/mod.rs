@@ -15,6 +15,7 @@
 
 mod conclusion;
 pub mod drive;
+mod evidence;
 pub mod experiment;
 pub mod fit;
 pub mod identified;

@@ -16,6 +16,7 @@ impl AxisParams {
         visitor.section("encoder", &mut self.encoder);
         visitor.section("motion", &mut self.motion);
         visitor.section("controller", &mut self.controller);
+        visitor.section("calm", &mut self.calm);
         visitor.section("filter", &mut self.filter);
         visitor.section("friction", &mut self.friction);
         visitor.section("output", &mut self.output);

@@ -160,7 +160,7 @@ fn prepared(
     let estimator = match estimator {
         EstimatorChoice::AsIs(config) => *config,
         EstimatorChoice::Observer(params) => {
-            EstimatorConfig::Observer(observer::Config::new(&on(params, model), scale)?)
+            EstimatorConfig::Observer(observer::Config::new(&observer_on(params, model), scale)?)
         }
     };
     let Lags { position, .. } = estimator.lags();
@@ -220,7 +220,8 @@ fn prepared(
 const LEFT_DISTURBANCE: f64 = 0.2;
 
 /// The observer of the drive.
-fn on(params: &ObserverParams, model: &DriveModel) -> ObserverParams {
+#[must_use]
+pub fn observer_on(params: &ObserverParams, model: &DriveModel) -> ObserverParams {
     ObserverParams {
         full_command_feed_mm_per_min: model.full_command_feed_mm_per_min,
         natural_period_s: model.natural_period_s,

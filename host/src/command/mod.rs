@@ -1,6 +1,7 @@
 //! The subcommands, a file each, and what they share.
 
 pub mod accuracy;
+pub mod autotune;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;

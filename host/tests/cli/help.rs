@@ -14,6 +14,8 @@ fn help_names_every_option_its_unit_and_its_default() {
             "calibrate-encoder",
             "sim-encoder",
             "tune-filter",
+            "identify",
+            "autotune",
             "target/leadscrew of the current directory",
             "Exit codes: 0 done, 1 the job failed, 2 bad usage",
         ],

@@ -1,6 +1,7 @@
 //! The command as a user meets it: the real binary, in a folder of its own.
 
 mod accuracy;
+mod autotune;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;

@@ -9,7 +9,13 @@
 //! chunks, which is how far the solution would move without each of them. To it comes what long waves of the encoder
 //! could do, over which every chunk passes alike.
 
-use super::drive::{Drive, NO_LIMIT, PARAMETERS, Vector, place};
+mod bounds;
+mod sums;
+mod waves;
+
+use self::sums::{Clusters, Sums};
+use self::waves::Waves;
+use super::drive::{Drive, PARAMETERS, Vector, place};
 use super::matrix::{Matrix, part, set};
 use super::recorder::Records;
 
@@ -47,53 +53,6 @@ pub struct Fit {
     pub rms_d: f64,
     /// Largest acceleration of the model, d a record².
     pub peak_acceleration: f64,
-}
-
-/// Sums over records.
-#[derive(Clone, Copy)]
-struct Sums {
-    count: f64,
-    error: f64,
-    slopes: Vector,
-    products: Matrix,
-    weighted: Vector,
-    square: f64,
-}
-
-impl Sums {
-    const ZERO: Self = Self {
-        count: 0.0,
-        error: 0.0,
-        slopes: [0.0; PARAMETERS],
-        products: Matrix::ZERO,
-        weighted: [0.0; PARAMETERS],
-        square: 0.0,
-    };
-
-    fn add(&mut self, error: f64, slopes: &Vector) {
-        self.count += 1.0;
-        self.error += error;
-        self.square += error * error;
-        self.products.add_product(slopes, slopes, 1.0);
-        for ((sum, weighted), slope) in self.slopes.iter_mut().zip(&mut self.weighted).zip(slopes) {
-            *sum += slope;
-            *weighted += slope * error;
-        }
-    }
-}
-
-impl Sums {
-    /// Products and weighted slopes about their means.
-    fn centred(&self) -> (Matrix, Vector) {
-        let count = self.count.max(1.0);
-        let mut products = self.products;
-        products.add_product(&self.slopes, &self.slopes, -1.0 / count);
-        let mut weighted = self.weighted;
-        for (sum, slope) in weighted.iter_mut().zip(&self.slopes) {
-            *sum -= slope * self.error / count;
-        }
-        (products, weighted)
-    }
 }
 
 impl Problem<'_> {
@@ -383,101 +342,6 @@ impl Problem<'_> {
     }
 }
 
-/// Scores of clusters.
-struct Clusters {
-    products: Matrix,
-    score: Vector,
-    count: f64,
-    is_empty: bool,
-}
-
-impl Default for Clusters {
-    fn default() -> Self {
-        Self {
-            products: Matrix::ZERO,
-            score: [0.0; PARAMETERS],
-            count: 0.0,
-            is_empty: true,
-        }
-    }
-}
-
-impl Clusters {
-    fn add(&mut self, score: &Vector) {
-        self.is_empty = false;
-        for (sum, score) in self.score.iter_mut().zip(score) {
-            *sum += score;
-        }
-    }
-
-    fn end(&mut self) {
-        if !self.is_empty {
-            self.products.add_product(&self.score, &self.score, 1.0);
-            self.count += 1.0;
-        }
-        self.score = [0.0; PARAMETERS];
-        self.is_empty = true;
-    }
-}
-
-/// Lengths of the waves of an encoder that are thought of, of the travel.
-const WAVES: [f64; 4] = [0.35, 0.7, 1.4, 2.8];
-
-/// An encoder has two long waves: one a revolution from its eccentricity, and the second harmonic.
-const SHARE_OF_WAVES: f64 = 2.0 / WAVES.len() as f64;
-
-/// What long waves of the encoder do to the parameters. Every chunk passes over the same ones, so neither clusters nor
-/// chunks show them; they are taken to have the variance of the errors that are left.
-struct Waves<'r> {
-    records: Records<'r>,
-    index: usize,
-    position: f64,
-    length: f64,
-    scores: [[Vector; 2]; WAVES.len()],
-}
-
-impl<'r> Waves<'r> {
-    fn new(records: Records<'r>) -> Self {
-        let (mut position, mut low, mut high) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for record in records.iter() {
-            position += record.travel_d;
-            low = low.min(position);
-            high = high.max(position);
-        }
-        Self {
-            records,
-            index: 0,
-            position: 0.0,
-            length: (high - low).max(1.0),
-            scores: [[[0.0; PARAMETERS]; 2]; WAVES.len()],
-        }
-    }
-
-    /// Takes the slopes of the next record.
-    fn add(&mut self, slopes: &Vector) {
-        let record = self.records.get(self.index).unwrap_or_default();
-        self.position += record.travel_d;
-        self.index = self.index.wrapping_add(1);
-        for (share, [sine, cosine]) in WAVES.iter().zip(&mut self.scores) {
-            let angle = core::f64::consts::TAU * self.position / (share * self.length);
-            let (s, c) = libm::sincos(angle);
-            for ((sine, cosine), slope) in sine.iter_mut().zip(cosine).zip(slopes) {
-                *sine += s * slope;
-                *cosine += c * slope;
-            }
-        }
-    }
-
-    fn covariance(&self, inverse: &Matrix, variance: f64) -> Matrix {
-        let mut covariance = Matrix::ZERO;
-        for score in self.scores.iter().flatten() {
-            let moved = inverse.apply(score);
-            covariance.add_product(&moved, &moved, variance * SHARE_OF_WAVES);
-        }
-        covariance
-    }
-}
-
 fn part_free(free: &Free, place: usize) -> bool {
     free.get(place).copied().unwrap_or(false)
 }
@@ -490,56 +354,5 @@ fn step(vector: &Vector, place: usize) -> f64 {
         place::LN_OMEGA | place::LN_DAMPING => 1e-4,
         place::MAX_ACCELERATION => 1e-3 * part(vector, place),
         _ => 0.02,
-    }
-}
-
-/// What a drive can be: place, least and most.
-const BOUNDS: [(usize, f64, f64); 8] = [
-    (place::GAIN, 1e-3, 1e6),
-    (place::FRICTION, 0.0, 1e6),
-    (place::LN_OMEGA, -7.0, 0.4),
-    (place::LN_DAMPING, -3.5, 2.0),
-    (place::DELAY, -0.9, 200.0),
-    (place::DEAD_TIME, 0.0, 200.0),
-    (place::MAX_ACCELERATION, 1e-6, NO_LIMIT),
-    (place::LN_STRIBECK, -8.0, 8.0),
-];
-
-impl Problem<'_> {
-    /// Friction that holds nothing may come out below zero, as noise has it.
-    fn bounds(&self) -> impl Iterator<Item = (usize, f64, f64)> {
-        let holds = self.held.is_some();
-        BOUNDS.into_iter().map(move |(place, low, high)| {
-            if place == place::FRICTION && !holds {
-                (place, -high, high)
-            } else {
-                (place, low, high)
-            }
-        })
-    }
-
-    /// A vector within what a drive can be.
-    fn bounded(&self, vector: &Vector) -> Vector {
-        let mut bounded = *vector;
-        for (place, low, high) in self.bounds() {
-            set(&mut bounded, place, |value| value.clamp(low, high));
-        }
-        bounded
-    }
-
-    /// Takes those parameters out of a step that it would carry past their bounds: the others then move as they
-    /// should.
-    fn hold_at_bounds(&self, vector: &Vector, normal: &mut Matrix, gradient: &mut Vector) {
-        for (place, low, high) in self.bounds() {
-            let (value, pull) = (part(vector, place), part(gradient, place));
-            if (value <= low && pull < 0.0) || (value >= high && pull > 0.0) {
-                for other in 0..PARAMETERS {
-                    normal.set(place, other, 0.0);
-                    normal.set(other, place, 0.0);
-                }
-                normal.set(place, place, 1.0);
-                set(gradient, place, |_| 0.0);
-            }
-        }
     }
 }
