@@ -1,7 +1,6 @@
 //! Threads on the bare and the full machine.
 
 use leadscrew_hal_mock::encoder::EncoderModel;
-use leadscrew_hal_mock::scenario::BANDWIDTH_RAD_PER_S;
 
 use super::error::TrackingError;
 use super::figures::{Judged, ThreadPass, Threads};
@@ -13,6 +12,8 @@ use crate::threads::{ThreadRow, ThreadTable};
 const PHASE_SPREAD_DEG: f64 = 0.1;
 /// Largest pitch error over 100 mm, d.
 const PITCH_ERROR: f64 = 2.0;
+/// Where the poles of the loop are placed, with the observer in it, rad/s.
+const BANDWIDTH_RAD_PER_S: f64 = 100.0;
 /// Passes at each speed.
 const PASSES: u32 = 3;
 /// What draws the errors of both encoders.

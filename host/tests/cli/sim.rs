@@ -43,6 +43,7 @@ fn json_has_its_keys_and_stands_alone() {
             "digest",
             "estimator",
             "estimators",
+            "fault",
             "feed_mm_per_min",
             "following_error",
             "machine",
@@ -118,7 +119,8 @@ fn a_coupling_that_slips_or_breaks_is_told() {
     let folder = Folder::new();
     for (slip, kind, words) in [
         ("1.0", "broken", "the encoder stands"),
-        ("0.1", "slipping", "turns less than the motor"),
+        // So little that the drive still follows, and no fault stops the axis.
+        ("0.05", "slipping", "turns less than the motor"),
     ] {
         folder.write(
             "loose.toml",
@@ -126,7 +128,7 @@ fn a_coupling_that_slips_or_breaks_is_told() {
         );
         let watched = folder.json("sim --machine loose.toml")["tachogenerator"].clone();
         let tick = number(&watched, "/disagreed_at_tick");
-        assert!((1800.0..1830.0).contains(&tick), "{slip}: {tick}");
+        assert!((1800.0..1850.0).contains(&tick), "{slip}: {tick}");
         let printed = folder.printed("sim --machine loose.toml");
         let warning = format!("warning: encoder and tachogenerator disagree from tick {tick} on");
         assert_says(&printed, &[&warning]);
