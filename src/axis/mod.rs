@@ -20,6 +20,7 @@ use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
+use crate::hal::Lines;
 use crate::homing::{HomeRefused, Homing, Sight};
 use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
@@ -97,11 +98,12 @@ impl<'m> Axis<'m> {
             .feedback(&outputs.estimate, observation.position());
 
         let told = self.output.command();
-        let lines = self.homing.without_limit_left(inputs.lines);
+        let mut left = Lines::default();
+        let lines = self.homing.without_limit_left(&inputs.lines, &mut left);
         let permit = self.supervisor.permit(&Situation {
             tick,
             enable: inputs.enable,
-            lines: &lines,
+            lines,
             illegal: inputs.capture.illegal,
             missed_ticks: inputs.missed_ticks,
             readback: inputs.readback,
@@ -110,7 +112,9 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        let open_loop = self.is_open_loop();
+        // Asked once: the answer is a long way off in memory.
+        let is_experiment = self.experiment.is_some();
+        let open_loop = is_experiment && self.is_open_loop();
         if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
@@ -127,12 +131,12 @@ impl<'m> Axis<'m> {
         outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
-        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
+        let estimate = self.estimators.fed_back(&outputs.estimate);
         let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
-        if let Some(experiment) = &mut self.experiment {
+        if is_experiment && let Some(experiment) = &mut self.experiment {
             demand.command = experiment.step(&Seen {
                 observation: &observation,
                 permit,
@@ -147,7 +151,7 @@ impl<'m> Axis<'m> {
             tick,
             moving: outputs.moving,
             trouble: self.sources.trouble().or(self.homing.trouble()),
-            lines: &lines,
+            lines,
             observation: &observation,
             estimate: &outputs.estimate,
             setpoint: &outputs.setpoint,
@@ -156,7 +160,7 @@ impl<'m> Axis<'m> {
             active,
             open_loop,
         });
-        if let Some(experiment) = &mut self.experiment {
+        if is_experiment && let Some(experiment) = &mut self.experiment {
             experiment.review(permit);
         }
         if self.supervisor.is_context_due() {
