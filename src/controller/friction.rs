@@ -162,7 +162,7 @@ impl State {
         let gap = config.target(setpoint).wrapping_sub(self.level);
         self.level = self
             .level
-            .wrapping_add(gap.clamp(config.slew.wrapping_neg(), config.slew));
+            .wrapping_add(gap.max(config.slew.wrapping_neg()).min(config.slew));
         self.level
     }
 }
