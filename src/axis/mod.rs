@@ -31,23 +31,26 @@ use crate::supervisor::{ClearError, Context, Fault, Permit, Review, Situation, S
 use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map and its screw table live.
+// What every tick needs comes first: the target reaches the first kilobyte by pairs, and four of them at all without
+// an address of their own.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
-    edges: EdgeReader<'m>,
-    estimators: Estimators,
-    supervisor: Supervisor,
-    sources: Sources,
-    homing: Homing,
-    compensation: Compensation<'m>,
-    controller: Controller,
-    output: Output,
-    experiment: Option<Experiment>,
-    config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
+    output: Output,
     /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
+    compensation: Compensation<'m>,
+    supervisor: Supervisor,
+    controller: Controller,
+    homing: Homing,
+    edges: EdgeReader<'m>,
+    experiment: Option<Experiment>,
+    sources: Sources,
+    estimators: Estimators,
+    config: AxisConfig,
 }
 
 impl<'m> Axis<'m> {

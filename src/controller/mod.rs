@@ -238,7 +238,9 @@ impl Controller {
             const FULL: i64 = 1 << (Command::FRAC_NBITS + INTEGRAL_SHIFT);
             self.integral = self.integral.wrapping_add(increment);
             // One comparison for both ends, which it seldom comes to.
-            if self.integral.wrapping_add(FULL).cast_unsigned() > 2 * FULL.cast_unsigned() {
+            if self.integral.wrapping_add(FULL).cast_unsigned()
+                > FULL.wrapping_mul(2).cast_unsigned()
+            {
                 self.integral = self.integral.clamp(-FULL, FULL);
             }
         }

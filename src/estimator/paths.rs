@@ -127,16 +127,18 @@ impl Config {
 }
 
 /// The estimators.
+// They are large, and so come last.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Estimators {
-    first: Estimator,
-    second: Option<Estimator>,
     paths: Paths,
     reads_edges: bool,
     /// The second estimator is shown, and the first one serves all else: what a second one is mostly for.
     is_display_alone: bool,
     /// What the feedback gets, where it is not what is shown.
     feedback: Estimate,
+    first: Estimator,
+    second: Option<Estimator>,
 }
 
 impl Estimators {
