@@ -58,8 +58,9 @@ impl Watch {
         self.following
             .is_quiet(&config.following, error, is_at_rest, review.tick)
             && (delta == 0 || delta ^ told >= 0)
-            && (delta.unsigned_abs() >= loss.counts || told.saturating_abs() <= loss.level)
-            && velocity.saturating_abs() <= config.overspeed
+            && (delta.unsigned_abs() >= loss.counts
+                || told.unsigned_abs() <= loss.level.unsigned_abs())
+            && velocity.unsigned_abs() <= config.overspeed.unsigned_abs()
             && self.index.way(observation.count).unsigned_abs() <= config.index.within
             && !(self.busy | lines.limit_low | lines.limit_high | active.high | active.low)
             && !observation.has_index()
