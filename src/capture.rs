@@ -179,7 +179,7 @@ impl Unwrapper {
 
         let [older, newer] = capture.edges;
         let edge_times = older.len().wrapping_add(newer.len());
-        let mut observation = Observation {
+        let observation = Observation {
             count: self.count,
             delta: moved,
             sampled_at: self.time,
@@ -192,7 +192,10 @@ impl Unwrapper {
         let trouble = u32::from(capture.illegal) | u32::from(capture.overrun);
         let ambiguous = edge_times != 0 && !observation.edges_complete;
         if trouble != 0 || ambiguous || moved.unsigned_abs() > MAX_DELTA.unsigned_abs() {
-            self.note_trouble(&mut observation, ambiguous);
+            // A copy, so that the other one is made where it goes.
+            let mut troubled = observation;
+            self.note_trouble(&mut troubled, ambiguous);
+            return troubled;
         }
         observation
     }

@@ -71,6 +71,8 @@ impl core::error::Error for RangeError {}
 ///
 /// # Errors
 /// [`RangeError`] with the name, the value and the range; NaN is always out of range.
+// A call: three comparisons of `f64` in software and an error to fill are long, and there are hundreds of them.
+#[inline(never)]
 pub fn checked(name: &'static str, value: f64, min: f64, max: f64) -> Result<f64, RangeError> {
     if (min..=max).contains(&value) {
         Ok(value)

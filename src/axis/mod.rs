@@ -23,6 +23,7 @@ use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence};
+use crate::hal::Lines;
 use crate::homing::Homing;
 use crate::identification::experiment::{Experiment, Seen};
 use crate::output::Output;
@@ -32,23 +33,26 @@ use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervis
 use crate::units::{Command, Position};
 
 /// One axis; `'m` is how long its encoder map and its screw table live.
+// What every tick needs comes first: the target reaches the first kilobyte by pairs, and four of them at all without
+// an address of their own.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Axis<'m> {
     unwrapper: Unwrapper,
-    edges: EdgeReader<'m>,
-    estimators: Estimators,
-    supervisor: Supervisor,
-    sources: Sources,
-    homing: Homing,
-    compensation: Compensation<'m>,
-    controller: Controller,
-    output: Output,
-    experiment: Option<Experiment>,
-    config: AxisConfig,
     /// The tick that comes next.
     tick: u32,
+    output: Output,
     /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
+    compensation: Compensation<'m>,
+    supervisor: Supervisor,
+    controller: Controller,
+    homing: Homing,
+    edges: EdgeReader<'m>,
+    experiment: Option<Experiment>,
+    sources: Sources,
+    estimators: Estimators,
+    config: AxisConfig,
 }
 
 impl<'m> Axis<'m> {
@@ -99,11 +103,12 @@ impl<'m> Axis<'m> {
             .feedback(&outputs.estimate, observation.position());
 
         let told = self.output.command();
-        let lines = self.homing.without_limit_left(inputs.lines);
+        let mut left = Lines::default();
+        let lines = self.homing.without_limit_left(&inputs.lines, &mut left);
         let permit = self.supervisor.permit(&Situation {
             tick,
             enable: inputs.enable,
-            lines: &lines,
+            lines,
             illegal: inputs.capture.illegal,
             missed_ticks: inputs.missed_ticks,
             readback: inputs.readback,
@@ -112,7 +117,9 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        let open_loop = self.is_open_loop();
+        // Asked once: the answer is a long way off in memory.
+        let is_experiment = self.experiment.is_some();
+        let open_loop = is_experiment && self.is_open_loop();
         if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
@@ -129,12 +136,12 @@ impl<'m> Axis<'m> {
         outputs.moving = self.sources.is_moving() || self.homing.is_active();
         outputs.setpoint = self.compensation.step(&commanded);
         let active = self.output.active_limits();
-        let (estimate, position) = self.estimators.feedback(&outputs.estimate, position);
+        let estimate = self.estimators.fed_back(&outputs.estimate);
         let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
-        if let Some(experiment) = &mut self.experiment {
+        if is_experiment && let Some(experiment) = &mut self.experiment {
             demand.command = experiment.step(&Seen {
                 observation: &observation,
                 permit,
@@ -149,7 +156,7 @@ impl<'m> Axis<'m> {
             tick,
             moving: outputs.moving,
             trouble: self.sources.trouble().or(self.homing.trouble()),
-            lines: &lines,
+            lines,
             observation: &observation,
             estimate: &outputs.estimate,
             setpoint: &outputs.setpoint,
@@ -158,7 +165,7 @@ impl<'m> Axis<'m> {
             active,
             open_loop,
         });
-        if let Some(experiment) = &mut self.experiment {
+        if is_experiment && let Some(experiment) = &mut self.experiment {
             experiment.review(permit);
         }
         if self.supervisor.is_context_due() {

@@ -167,6 +167,7 @@ impl Config {
 pub(super) const LEAD_FRAC: u32 = 12;
 
 /// `value`·2^`frac` to nearest.
+#[inline(never)]
 fn fixed_bits(value: f64, frac: u32) -> i32 {
     libm::round(libm::ldexp(value, frac.cast_signed())) as i32
 }

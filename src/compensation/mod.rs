@@ -269,7 +269,7 @@ impl<'m> Compensation<'m> {
         let gap = wanted.wrapping_sub(self.limited);
         self.limited = self
             .limited
-            .wrapping_add(gap.clamp(rate.wrapping_neg(), rate));
+            .wrapping_add(gap.max(rate.wrapping_neg()).min(rate));
         self.first = self
             .first
             .wrapping_add(self.step_of(self.limited, self.first));

@@ -47,10 +47,17 @@ pub struct Stretch {
     from: i64,
     /// How long it is, Q.8 d.
     length: i32,
-    /// Compensation at its start, Q12.20 d; forward, backward.
-    values: [i32; 2],
-    /// How the compensation grows, Q.31 d a d.
-    slopes: [i32; 2],
+    /// Forward, backward.
+    lines: [Line; 2],
+}
+
+/// The compensation along a stretch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Line {
+    /// At its start, Q12.20 d.
+    value: i32,
+    /// How it grows, Q.31 d a d.
+    slope: i32,
 }
 
 /// A table in lent memory.
@@ -147,9 +154,10 @@ impl<'m> ScrewTable<'m> {
             return 0;
         };
         let mut offset = here.offset(place);
-        if offset < 0 || offset > i64::from(here.length) {
+        // Below its start it is large without a sign.
+        if offset.cast_unsigned() > u64::from(here.length.cast_unsigned()) {
             here = self.next(offset, stretch).unwrap_or(here);
-            offset = here.offset(place).clamp(0, i64::from(here.length));
+            offset = here.offset(place).max(0).min(i64::from(here.length));
         }
         here.value(offset as i32, heading)
     }
@@ -181,8 +189,7 @@ impl Stretch {
     pub const EMPTY: Self = Self {
         from: 0,
         length: 0,
-        values: [0; 2],
-        slopes: [0; 2],
+        lines: [Line { value: 0, slope: 0 }; 2],
     };
 
     /// With its steepest slope and its length, d.
@@ -210,14 +217,16 @@ impl Stretch {
                 slope: steepest,
             });
         }
+        let line = |error: ScrewError, slope: f64| Line {
+            value: error.to_bits().wrapping_neg(),
+            slope: -libm::round(libm::ldexp(slope, SLOPE_FRAC.cast_signed())) as i32,
+        };
         let from = before.position.to_bits();
         let end = after.position.to_bits();
         let stretch = Self {
             from,
             length: end.wrapping_sub(from).wrapping_shr(POSITION_TO_OFFSET) as i32,
-            values: before.error.map(|error| error.to_bits().wrapping_neg()),
-            slopes: slopes
-                .map(|slope| -libm::round(libm::ldexp(slope, SLOPE_FRAC.cast_signed())) as i32),
+            lines: [line(forward, slopes[0]), line(backward, slopes[1])],
         };
         Ok((stretch, steepest, length))
     }
@@ -234,10 +243,9 @@ impl Stretch {
     /// is bounded by the points' own values.
     #[inline]
     fn value(&self, offset: i32, heading: Heading) -> i32 {
-        let rise = i64::from(offset).wrapping_mul(i64::from(*heading.of_pair(&self.slopes)));
-        heading
-            .of_pair(&self.values)
-            .wrapping_add(rise.wrapping_shr(RISE_SHIFT) as i32)
+        let Line { value, slope } = *heading.of_pair(&self.lines);
+        let rise = i64::from(offset).wrapping_mul(i64::from(slope));
+        value.wrapping_add(rise.wrapping_shr(RISE_SHIFT) as i32)
     }
 }
 

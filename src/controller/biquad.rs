@@ -132,11 +132,12 @@ const fn product(one: i32, other: i32) -> i64 {
 /// `value` within ± full command.
 #[inline]
 pub(super) const fn bounded(value: i64) -> i32 {
-    if value > FULL {
-        FULL as i32
-    } else if value < FULL.wrapping_neg() {
+    // One comparison for both ends: below the lower one the sum is large without a sign.
+    if value.wrapping_add(FULL).cast_unsigned() <= FULL.wrapping_mul(2).cast_unsigned() {
+        value as i32
+    } else if value < 0 {
         FULL.wrapping_neg() as i32
     } else {
-        value as i32
+        FULL as i32
     }
 }

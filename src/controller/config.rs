@@ -171,7 +171,7 @@ impl Config {
                     checked("calm_error_d", calm.error, 0.0, 3e4)?,
                     FollowingError::FRAC_NBITS,
                 ),
-                checked("calm_ticks", calm.ticks, 0.0, 1e6)? as u32,
+                (checked("calm_ticks", calm.ticks, 0.0, 1e6)? as u32).max(1),
             ),
             None => (moving, -1, 0, u32::MAX),
         };
@@ -349,6 +349,7 @@ fn weight(gain: f64, frac: u32) -> f64 {
 }
 
 /// `value`·2^`frac` to nearest.
+#[inline(never)]
 fn scaled(value: f64, frac: u32) -> i32 {
     libm::round(libm::ldexp(value, frac.cast_signed())) as i32
 }

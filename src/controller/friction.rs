@@ -98,8 +98,8 @@ impl Config {
         if speed <= self.least_speed {
             return 0;
         }
-        let [forward, backward] = self.levels;
-        let [kinetic, excess] = if velocity > 0 { forward } else { backward };
+        let [forward, backward] = &self.levels;
+        let [kinetic, excess] = *if velocity > 0 { forward } else { backward };
         let product = u64::from(speed).wrapping_mul(u64::from(self.per_stribeck));
         let relative = (product.wrapping_shr(32) as u32).min(FAST);
         let square = relative.wrapping_mul(relative).wrapping_shr(8);
@@ -162,7 +162,7 @@ impl State {
         let gap = config.target(setpoint).wrapping_sub(self.level);
         self.level = self
             .level
-            .wrapping_add(gap.clamp(config.slew.wrapping_neg(), config.slew));
+            .wrapping_add(gap.max(config.slew.wrapping_neg()).min(config.slew));
         self.level
     }
 }

@@ -191,8 +191,12 @@ impl Controller {
     /// Whether the gains for slow motion count; what the law would jump by when they begin to is let in.
     #[inline]
     fn is_calm(&mut self, signals: &[i32; TERMS], setpoint: &Setpoint) -> bool {
-        let was_calm = self.slow_ticks >= self.config.calm_ticks;
         let speed = setpoint.velocity.to_bits().saturating_abs();
+        if speed > self.config.calm_speed {
+            self.slow_ticks = 0;
+            return false;
+        }
+        let was_calm = self.slow_ticks >= self.config.calm_ticks;
         let [error, ..] = *signals;
         // Eight times as much to leave as to come: the other gains, at rest, may be what makes the error.
         let bound = if was_calm {
@@ -200,15 +204,16 @@ impl Controller {
         } else {
             self.config.calm_error
         };
-        let is_slow = speed <= self.config.calm_speed && error.saturating_abs() <= bound;
-        self.slow_ticks = if !is_slow {
-            0
-        } else {
+        self.slow_ticks = if error.saturating_abs() <= bound {
             self.slow_ticks.saturating_add(1)
+        } else {
+            0
         };
         let calm = self.slow_ticks >= self.config.calm_ticks;
         if calm && !was_calm {
-            self.calm_down(signals);
+            // A copy: in all other ticks the signals never leave the registers for it.
+            let signals = *signals;
+            self.calm_down(&signals);
         }
         calm
     }
@@ -230,11 +235,14 @@ impl Controller {
     fn integrate(&mut self, increment: i64, active: ActiveLimits) {
         let driven_further = (increment > 0 && active.high) || (increment < 0 && active.low);
         if !driven_further {
-            let full = i64::from(Command::ONE.to_bits()).wrapping_shl(INTEGRAL_SHIFT);
-            self.integral = self
-                .integral
-                .wrapping_add(increment)
-                .clamp(full.wrapping_neg(), full);
+            const FULL: i64 = 1 << (Command::FRAC_NBITS + INTEGRAL_SHIFT);
+            self.integral = self.integral.wrapping_add(increment);
+            // One comparison for both ends, which it seldom comes to.
+            if self.integral.wrapping_add(FULL).cast_unsigned()
+                > FULL.wrapping_mul(2).cast_unsigned()
+            {
+                self.integral = self.integral.clamp(-FULL, FULL);
+            }
         }
     }
 

@@ -127,25 +127,37 @@ impl Config {
 }
 
 /// The estimators.
+// They are large, and so come last.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Estimators {
-    first: Estimator,
-    second: Option<Estimator>,
     paths: Paths,
     reads_edges: bool,
+    /// The second estimator is shown, and the first one serves all else: what a second one is mostly for.
+    is_display_alone: bool,
     /// What the feedback gets, where it is not what is shown.
     feedback: Estimate,
+    first: Estimator,
+    second: Option<Estimator>,
 }
 
 impl Estimators {
     /// Estimators that wait for their first sample.
     #[must_use]
     pub fn new(config: &Config) -> Self {
+        let Paths {
+            velocity,
+            acceleration,
+            display,
+            ..
+        } = config.paths;
         Self {
             first: Estimator::new(config.first),
             second: config.second.map(Estimator::new),
             paths: config.paths,
             reads_edges: config.reads_edges(),
+            is_display_alone: [velocity, acceleration, display]
+                == [Choice::First, Choice::First, Choice::Second],
             feedback: Estimate::default(),
         }
     }
@@ -170,12 +182,18 @@ impl Estimators {
         if self.reads_edges {
             evidence.sample = evidence.edges.sample(evidence.observation);
         }
-        if let Some(second) = &mut self.second {
+        let Some(second) = &mut self.second else {
+            *display = self.first.update(evidence);
+            return;
+        };
+        if self.is_display_alone {
+            // Each goes where it is wanted, and nothing is parted.
+            *display = second.update(evidence);
+            self.feedback = self.first.update(evidence);
+        } else {
             let second = second.update(evidence);
             let first = self.first.update(evidence);
             self.share([first, second], display);
-        } else {
-            *display = self.first.update(evidence);
         }
     }
 
@@ -204,15 +222,22 @@ impl Estimators {
         display: &'e Estimate,
         count: Position,
     ) -> (&'e Estimate, Position) {
-        let estimate = if self.second.is_some() {
-            &self.feedback
-        } else {
-            display
-        };
+        let estimate = self.fed_back(display);
         let position = match self.paths.position {
             PositionFeedback::Count => count,
             PositionFeedback::Estimate => estimate.position,
         };
         (estimate, position)
+    }
+
+    /// The estimate of [`Self::feedback`] alone.
+    #[inline]
+    #[must_use]
+    pub const fn fed_back<'e>(&'e self, display: &'e Estimate) -> &'e Estimate {
+        if self.second.is_some() {
+            &self.feedback
+        } else {
+            display
+        }
     }
 }

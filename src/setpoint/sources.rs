@@ -37,26 +37,28 @@ pub enum Source {
 }
 
 /// All sources.
+// What every tick needs comes first, as in the axis.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Sources {
+    last: Setpoint,
+    selected: Source,
+    /// A stop runs, or the axis stands after one; no source is followed until it stands and may.
+    stopping: bool,
+    trouble: Option<Fault>,
     /// Planned moves.
     pub trajectory: Trajectory,
+    thread: Thread,
     config: Config,
     limits: Limits,
-    selected: Source,
     step_dir: StepDir,
     analog: Analog,
     gearing: Gearing,
-    thread: Thread,
     /// The second encoder.
     master: Master,
     /// Stops whatever moves.
     stop: Follower,
-    /// A stop runs, or the axis stands after one; no source is followed until it stands and may.
-    stopping: bool,
-    trouble: Option<Fault>,
     travel: Option<TravelLimits>,
-    last: Setpoint,
 }
 
 impl Sources {

@@ -46,19 +46,21 @@ impl fmt::Display for QueueError {
 impl core::error::Error for QueueError {}
 
 /// The setpoint generator of an axis: one plan that runs and one that waits.
+// The plans are large, and so come last.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub struct Trajectory {
     state: State,
     /// Where the running plan ends, 2⁻⁴⁸ d.
     target: i128,
     phase: Phase,
     next_segment: usize,
-    /// The plan that runs and the one that waits; they change places when it starts.
-    plans: [Plan; 2],
     running: usize,
     remaining_ticks: u32,
     waiting_start: Option<u32>,
     dropped: u32,
+    /// The plan that runs and the one that waits; they change places when it starts.
+    plans: [Plan; 2],
 }
 
 /// The segment that runs, as what it adds in a tick.

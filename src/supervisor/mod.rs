@@ -112,7 +112,24 @@ impl Supervisor {
         if is_quiet {
             Permit::Follow
         } else {
-            self.decide(situation)
+            // Put together anew: what is handed on as it came would have to be in memory in every tick.
+            let Situation {
+                tick,
+                enable,
+                lines,
+                illegal,
+                missed_ticks,
+                ..
+            } = *situation;
+            self.decide(&Situation {
+                tick,
+                enable,
+                lines,
+                illegal,
+                missed_ticks,
+                readback,
+                told,
+            })
         }
     }
 
@@ -180,13 +197,43 @@ impl Supervisor {
         self.moving = review.moving;
         self.velocity = review.estimate.velocity.to_bits();
         self.in_loop = review.permit > Permit::ZeroVolts;
-        if !self.in_loop {
-            return self.review_off(review);
-        }
-        if self.watch.is_quiet(&self.config, review) && review.trouble.is_none() {
+        if self.in_loop && self.watch.is_quiet(&self.config, review) && review.trouble.is_none() {
             return review.permit;
         }
-        self.judge(review)
+        // Put together anew, as in `permit`.
+        let Review {
+            permit,
+            tick,
+            moving,
+            trouble,
+            lines,
+            observation,
+            estimate,
+            setpoint,
+            following_error,
+            told,
+            active,
+            open_loop,
+        } = *review;
+        let review = Review {
+            permit,
+            tick,
+            moving,
+            trouble,
+            lines,
+            observation,
+            estimate,
+            setpoint,
+            following_error,
+            told,
+            active,
+            open_loop,
+        };
+        if self.in_loop {
+            self.judge(&review)
+        } else {
+            self.review_off(&review)
+        }
     }
 
     #[cold]

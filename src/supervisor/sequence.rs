@@ -84,6 +84,8 @@ impl Sequence {
         }
     }
 
+    #[cold]
+    #[inline(never)]
     pub const fn state(&self, moving: bool, faulted: bool) -> State {
         match self.phase {
             Phase::Disabled => State::Disabled,
@@ -97,6 +99,8 @@ impl Sequence {
     }
 
     /// The drive carries the axis at 0 V while the brake closes, so the brake is still open before.
+    #[cold]
+    #[inline(never)]
     pub const fn brake_released(&self) -> bool {
         matches!(
             self.phase,

@@ -6,8 +6,13 @@ use super::{Fault, FaultSet, State, Supervisor};
 impl Supervisor {
     /// Where it stands.
     #[must_use]
+    #[inline]
     pub const fn state(&self) -> State {
-        self.sequence.state(self.moving, self.latch.is_set())
+        match (self.sequence.is_running(), self.moving) {
+            (true, true) => State::Moving,
+            (true, false) => State::Ready,
+            (false, _) => self.sequence.state(self.moving, self.latch.is_set()),
+        }
     }
 
     /// The fault that is latched.
@@ -53,8 +58,9 @@ impl Supervisor {
 
     /// True if the brake is to be open.
     #[must_use]
+    #[inline]
     pub const fn brake_released(&self) -> bool {
-        self.sequence.brake_released()
+        self.sequence.is_running() || self.sequence.brake_released()
     }
 
     /// Largest following error since the last reset, Q15.16 d.

@@ -53,16 +53,14 @@ impl Watch {
         let delta = observation.delta;
         let is_at_rest = !review.moving && review.setpoint.velocity.to_bits() == 0;
         let error = review.following_error;
-        let follows = self
-            .following
-            .is_quiet(&config.following, error, is_at_rest, review.tick);
-        let agrees = delta == 0 || delta ^ told >= 0;
         let loss = &config.encoder_loss;
-        let answers = told.saturating_abs() <= loss.level || delta.unsigned_abs() >= loss.counts;
-        follows
-            && agrees
-            && answers
-            && velocity.saturating_abs() <= config.overspeed
+        // One after the other: a comparison and a jump each.
+        self.following
+            .is_quiet(&config.following, error, is_at_rest, review.tick)
+            && (delta == 0 || delta ^ told >= 0)
+            && (delta.unsigned_abs() >= loss.counts
+                || told.unsigned_abs() <= loss.level.unsigned_abs())
+            && velocity.unsigned_abs() <= config.overspeed.unsigned_abs()
             && self.index.way(observation.count).unsigned_abs() <= config.index.within
             && !(self.busy | lines.limit_low | lines.limit_high | active.high | active.low)
             && !observation.has_index()

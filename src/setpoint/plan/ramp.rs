@@ -53,6 +53,8 @@ impl Course {
     }
 
     /// Goes on for `ticks` with `jerk`; `None` if that is too long.
+    // Functions of 128-bit numbers are long, and out of the tick a call costs nothing.
+    #[inline(never)]
     pub(super) fn run(&mut self, ticks: i128, jerk: i128) -> Option<()> {
         if ticks == 0 {
             return Some(());
@@ -139,6 +141,7 @@ impl Ramp {
     }
 
     /// Acceleration and gap as seen in the direction in which the acceleration has to go, and that direction.
+    #[inline(never)]
     fn folded(&self, state: &State, target: i64) -> (i128, i128, i128) {
         let acceleration = i128::from(state.acceleration);
         let gap = i128::from(target)
@@ -152,6 +155,7 @@ impl Ramp {
     }
 
     /// From an acceleration beyond the limit back to it.
+    #[inline(never)]
     fn come_back(&self, course: &mut Course, acceleration: i128, sign: i128) -> Option<()> {
         let over = acceleration.wrapping_sub(self.acceleration);
         let back = sign.wrapping_neg();
@@ -164,6 +168,7 @@ impl Ramp {
     }
 
     /// As many ticks of full jerk as fit, from `acceleration` not above its limit.
+    #[inline(never)]
     fn climb(&self, acceleration: i128, gap: i128) -> Option<Climb> {
         let room = self.acceleration.wrapping_sub(acceleration);
         let most = room.checked_div(self.jerk)?;
@@ -192,6 +197,7 @@ impl Ramp {
     }
 
     /// G: what the velocity gains from `acceleration` on, half of the first tick taken out.
+    #[inline(never)]
     fn hill(&self, acceleration: i128) -> i128 {
         let size = acceleration.wrapping_abs();
         let whole = size.checked_div(self.jerk).unwrap_or_default();
@@ -203,6 +209,7 @@ impl Ramp {
     }
 
     /// The acceleration with G = `gap`, rounded towards zero to an even one.
+    #[inline(never)]
     fn solved(&self, gap: i128) -> Option<i128> {
         let size = gap.wrapping_abs();
         let ratio = size as f64 / self.jerk as f64;

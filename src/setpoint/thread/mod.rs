@@ -63,9 +63,10 @@ pub enum SpindleTrouble {
 }
 
 /// A pass of a thread.
+// The plan is large, and so comes last.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub struct Thread {
-    plan: Plan,
     phase: ThreadPhase,
     /// The second leg of the approach has been queued.
     is_last_leg: bool,
@@ -74,6 +75,7 @@ pub struct Thread {
     speed: i32,
     retract: bool,
     trouble: Option<SpindleTrouble>,
+    plan: Plan,
 }
 
 impl Thread {

@@ -15,6 +15,7 @@ mod simulator;
 mod sources;
 mod staged;
 mod standard_move;
+mod whole;
 
 use board_mps2_an386::instructions::Counter;
 use board_mps2_an386::{arguments, exit_failure, exit_success, time_driver};
@@ -41,6 +42,7 @@ fn main() -> ! {
 
 fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     standard_move::run(counter)?;
+    whole::run(counter)?;
     one_stamp::run(counter)?;
     sources::run(counter)?;
     adversary::run(counter)?;
