@@ -5,6 +5,7 @@ use super::biquad::Section;
 use super::dead_time::Config as DeadTimeConfig;
 use super::filter::{Config as FilterConfig, MAX_SECTIONS, MAX_TAPS};
 use super::friction::{Config as FrictionConfig, Friction};
+use super::integral::{Config as IntegralConfig, INTEGRAL_SHIFT};
 use crate::estimator::Delay;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
@@ -12,9 +13,6 @@ use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 pub(super) const TERMS: usize = 7;
 /// Weighted inputs of the feedforward part: the setpoints.
 pub(super) const SETPOINTS: usize = 3;
-
-/// Fractional bits of the integral beyond those of a command.
-pub(super) const INTEGRAL_SHIFT: u32 = 26;
 
 /// Gains in fractions of full command per unit of the tick (d, d/tick, …).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,6 +48,8 @@ pub struct Extras {
     pub friction: Friction,
     /// Following error within which the integral holds while the setpoint rests, d.
     pub rest_band_d: f64,
+    /// Speed from which on the integral goes with the speed, d/tick; 0 for never.
+    pub integral_by_speed: f64,
     /// Ticks for which the drive stands at a reversal of its command.
     pub dead_ticks: f64,
     /// Command either side of zero that the drive does not answer to.
@@ -98,8 +98,7 @@ pub struct Config {
     /// Ticks for which both have to be smaller.
     pub(super) calm_ticks: u32,
     deadband: i32,
-    /// Largest following error at which the integral holds at rest; below zero for none.
-    pub(super) rest_band: i32,
+    pub(super) integral: IntegralConfig,
     pub(super) transfer_decay: u32,
     pub(super) filter: FilterConfig,
     /// Where there are filters, the feedforward and the bias, which pass by them.
@@ -177,8 +176,17 @@ impl Config {
         };
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
         let rest_band = checked("rest_band_d", extras.rest_band_d, 0.0, 1000.0)?;
+        let rest_band = if rest_band > 0.0 {
+            scaled(rest_band, FollowingError::FRAC_NBITS)
+        } else {
+            -1
+        };
+        let held = extras.friction.breakaway.into_iter().fold(0.0, f64::max);
+        // Before the filters, which let a steady command through by 1/(1 + Σ taps).
+        let held = held * (1.0 + extras.taps.iter().sum::<f64>());
         Ok(Self {
             moving,
+            integral: IntegralConfig::new(extras.integral_by_speed, rest_band, held)?,
             calm,
             calm_speed,
             calm_error,
@@ -193,11 +201,6 @@ impl Config {
                 checked("deadband_d", deadband_d, 0.0, 1000.0)?,
                 FollowingError::FRAC_NBITS,
             ),
-            rest_band: if rest_band > 0.0 {
-                scaled(rest_band, FollowingError::FRAC_NBITS)
-            } else {
-                -1
-            },
             transfer_decay: libm::round(libm::ldexp(libm::exp(-1.0 / transfer), 31)) as u32,
         })
     }

@@ -5,7 +5,10 @@
 //! v + τ·a + τ²·j/2, so that the level stands when the motion starts or reverses. It comes and goes at a bounded rate, and
 //! so passes zero speed smoothly; below a least speed, and at rest, it is let go.
 //!
-//! It acts on the setpoint alone: an error, or noise of an estimate, cannot make it chatter.
+//! In motion it acts on the setpoint alone: an error, or noise of an estimate, cannot make it chatter. At rest the
+//! setpoint has no direction, and a standing error is held by static friction. There the level rises evenly in the direction of the error
+//! until the axis lets go, and is gone when the error is within its band: an integral would still push then, and throw the axis
+//! to the other side, as friction falls with speed.
 
 use crate::estimator::saturate;
 use crate::setpoint::Setpoint;
@@ -26,6 +29,8 @@ pub struct Friction {
     pub rise_ticks: f64,
     /// How far ahead the setpoint is looked at, ticks.
     pub lead_ticks: f64,
+    /// Ticks in which the level at rest rises to the largest one; 0: it does not.
+    pub lift_ticks: f64,
 }
 
 /// Quantised friction.
@@ -41,6 +46,9 @@ pub struct Config {
     per_stribeck: u32,
     /// τ, Q.16, and τ²/2, Q.8.
     lead: [i32; 2],
+    /// Rise of the level at rest in a tick, and its bound, Q.30.
+    lift: i32,
+    most_lift: i32,
 }
 
 /// v/v_s beyond which the excess is gone, Q.8.
@@ -71,7 +79,12 @@ impl Config {
         let stribeck = checked("stribeck_d_per_tick", friction.stribeck, 2.5e-4, 2e3)?;
         let least = checked("friction_least_d_per_tick", friction.least_speed, 0.0, 2e3)?;
         let lead = checked("friction_lead_ticks", friction.lead_ticks, 0.0, 1000.0)?;
+        let lift = checked("friction_lift_ticks", friction.lift_ticks, 0.0, 1e6)?;
+        let per_tick = if lift == 0.0 { 0.0 } else { largest / lift };
+        let most_lift = (largest * MOST_LIFT).min(1.0);
         Ok(Self {
+            lift: fixed(per_tick, Command::FRAC_NBITS) as i32,
+            most_lift: fixed(most_lift, Command::FRAC_NBITS) as i32,
             levels,
             slew: fixed(largest / rise, Command::FRAC_NBITS).max(1.0) as i32,
             least_speed: fixed(least, Velocity::FRAC_NBITS) as u32,
@@ -88,6 +101,13 @@ impl Config {
     #[must_use]
     pub const fn is_on(&self) -> bool {
         self.slew != 0
+    }
+
+    /// Static friction is overcome at rest.
+    #[inline]
+    #[must_use]
+    pub const fn lifts(&self) -> bool {
+        self.lift != 0
     }
 
     /// The level that a motion asks for.
@@ -131,6 +151,10 @@ impl Config {
     }
 }
 
+/// Bound of the level at rest, of the largest level: friction may have grown.
+const MOST_LIFT: f64 = 1.6;
+/// Change of the following error that shows that the axis has let go, Q15.16.
+const LEAST_WAY: i32 = 3 << 14;
 /// Fractional bits of τ.
 const LEAD_FRAC: u32 = 16;
 /// Fractional bits of τ²/2.
@@ -140,13 +164,18 @@ const SQUARE_FRAC: u32 = 8;
 #[derive(Clone, Debug, Default)]
 pub struct State {
     level: i32,
+    /// Following error at which the level at rest began to rise, Q15.16.
+    lifted_at: i32,
 }
 
 impl State {
     /// No level.
     #[must_use]
     pub const fn new() -> Self {
-        Self { level: 0 }
+        Self {
+            level: 0,
+            lifted_at: 0,
+        }
     }
 
     /// The level in force.
@@ -163,6 +192,29 @@ impl State {
         self.level = self
             .level
             .wrapping_add(gap.max(config.slew.wrapping_neg()).min(config.slew));
+        self.level
+    }
+
+    /// One tick at rest, with a standing `error`, Q15.16, or none; the level after it.
+    #[inline]
+    pub fn lift(&mut self, config: &Config, error: Option<i32>) -> i32 {
+        let Some(error) = error else {
+            self.level = 0;
+            return 0;
+        };
+        let has_moved = error.wrapping_sub(self.lifted_at).saturating_abs() > LEAST_WAY;
+        let is_against = self.level.signum().wrapping_mul(error.signum()) < 0;
+        if has_moved || is_against {
+            self.lifted_at = error;
+            self.level = 0;
+        } else {
+            let step = config.lift.wrapping_mul(error.signum());
+            let most = config.most_lift;
+            self.level = self
+                .level
+                .saturating_add(step)
+                .clamp(most.wrapping_neg(), most);
+        }
         self.level
     }
 }

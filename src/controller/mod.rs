@@ -19,14 +19,16 @@
 //!
 //! At enable and at a change of parameters the law would jump; the jump is taken up by `transfer`,
 //! which then decays geometrically, so the output stays continuous. Integration stops while the output
-//! is limited in the direction in which the error would drive it further, and while the setpoint rests and the error is
-//! within a band that static friction is left to hold; the integral itself stays within ±1.
+//! is limited in the direction in which the error would drive it further, and at rest where static friction holds the axis
+//! ([`integral`], [`friction`]); the integral itself stays within ±1, and as much again at sixteen times the speed from which on it goes
+//! with the speed.
 
 pub mod biquad;
 pub mod config;
 pub mod dead_time;
 pub mod filter;
 pub mod friction;
+pub mod integral;
 pub mod params;
 
 pub use config::Config;
@@ -37,7 +39,7 @@ use crate::setpoint::Setpoint;
 use crate::units::{Command, Position};
 
 use crate::estimator::saturate;
-use config::{INTEGRAL_SHIFT, TERMS};
+use integral::Verdict;
 
 /// Following error x_set − x in Q15.16 d; saturates at ±32 768 d.
 pub type FollowingError = fixed::types::I16F16;
@@ -46,8 +48,8 @@ pub type FollowingError = fixed::types::I16F16;
 #[derive(Clone, Debug)]
 pub struct Controller {
     config: Config,
-    /// ki·Σe, fractions of full command with 30 + [`INTEGRAL_SHIFT`] fractional bits.
-    integral: i64,
+    /// ki·Σe.
+    integral: integral::State,
     /// Error of the previous tick, less the deadband.
     previous_error: i32,
     previous_following_error: i32,
@@ -79,7 +81,7 @@ impl Controller {
     pub const fn new(config: Config) -> Self {
         Self {
             config,
-            integral: 0,
+            integral: integral::State::new(),
             slow_ticks: u32::MAX,
             filter: filter::State::new(),
             friction: friction::State::new(),
@@ -132,28 +134,42 @@ impl Controller {
         ];
         self.previous_error = error;
         self.previous_following_error = following_error.to_bits();
-        let calm = self.is_calm(&signals, setpoint);
+        let calm = self.is_calm(error, setpoint);
         let set = if calm {
             &self.config.calm
         } else {
             &self.config.moving
         };
         let mut law = set.weigh(&signals);
-        if !(self.config.rest_band >= error.saturating_abs() && is_at_rest(setpoint)) {
+        let resting = is_at_rest(setpoint);
+        let (config, speed) = (&self.config.integral, setpoint.velocity.to_bits());
+        let verdict = self.integral.judge(config, error, resting);
+        let is_lifted = resting && self.config.friction.lifts() && verdict != Verdict::Far;
+        if !is_lifted && verdict != Verdict::Within {
             let increment = i64::from(error).wrapping_mul(i64::from(set.integral_gain));
-            self.integrate(increment, active);
+            // Not further into a limit of the output.
+            if !(increment > 0 && active.high || increment < 0 && active.low) {
+                self.integral.add(increment);
+            }
         }
-        law = law.wrapping_add(self.integral.wrapping_shr(INTEGRAL_SHIFT));
+        if config.learns() && setpoint.acceleration.to_bits() | setpoint.jerk.to_bits() == 0 {
+            self.integral.learn(config, speed);
+        }
+        law = law.wrapping_add(self.integral.value(config, speed));
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
         if self.config.friction.is_on() {
-            let level = self.friction.step(&self.config.friction, setpoint);
+            let level = if is_lifted {
+                let standing = (verdict == Verdict::Near).then_some(error);
+                self.friction.lift(&self.config.friction, standing)
+            } else {
+                self.friction.step(&self.config.friction, setpoint)
+            };
             law = law.wrapping_add(i64::from(level));
         }
         if self.config.dead_time.is_on() {
             let friction = self.friction.level().to_bits();
-            let resting = is_at_rest(setpoint);
             law = self
                 .dead_time
                 .step(&self.config.dead_time, law, friction, resting);
@@ -188,16 +204,15 @@ impl Controller {
         config.ahead(&setpoints).wrapping_add(i64::from(filtered))
     }
 
-    /// Whether the gains for slow motion count; what the law would jump by when they begin to is let in.
+    /// Whether the gains for slow motion count.
     #[inline]
-    fn is_calm(&mut self, signals: &[i32; TERMS], setpoint: &Setpoint) -> bool {
+    fn is_calm(&mut self, error: i32, setpoint: &Setpoint) -> bool {
         let speed = setpoint.velocity.to_bits().saturating_abs();
         if speed > self.config.calm_speed {
             self.slow_ticks = 0;
             return false;
         }
         let was_calm = self.slow_ticks >= self.config.calm_ticks;
-        let [error, ..] = *signals;
         // Eight times as much to leave as to come: the other gains, at rest, may be what makes the error.
         let bound = if was_calm {
             self.config.calm_error.saturating_mul(8)
@@ -209,41 +224,7 @@ impl Controller {
         } else {
             0
         };
-        let calm = self.slow_ticks >= self.config.calm_ticks;
-        if calm && !was_calm {
-            // A copy: in all other ticks the signals never leave the registers for it.
-            let signals = *signals;
-            self.calm_down(&signals);
-        }
-        calm
-    }
-
-    /// The transfer term takes up what the gains for motion make of the signals and the calm ones do not. On the way back
-    /// there is none: what would be held back then is what corrects the start of a motion.
-    #[cold]
-    #[inline(never)]
-    fn calm_down(&mut self, signals: &[i32; TERMS]) {
-        const MOST: i64 = 1 << 32;
-        let Config { moving, calm, .. } = &self.config;
-        let jump = moving.weigh(signals).wrapping_sub(calm.weigh(signals));
-        let transfer = self.transfer.wrapping_add(self.config.filter.steady(jump));
-        self.transfer = transfer.clamp(1 - MOST, MOST - 1);
-    }
-
-    /// Adds the error to the integral unless the output is at a limit and the error drives into it.
-    #[inline]
-    fn integrate(&mut self, increment: i64, active: ActiveLimits) {
-        let driven_further = (increment > 0 && active.high) || (increment < 0 && active.low);
-        if !driven_further {
-            const FULL: i64 = 1 << (Command::FRAC_NBITS + INTEGRAL_SHIFT);
-            self.integral = self.integral.wrapping_add(increment);
-            // One comparison for both ends, which it seldom comes to.
-            if self.integral.wrapping_add(FULL).cast_unsigned()
-                > FULL.wrapping_mul(2).cast_unsigned()
-            {
-                self.integral = self.integral.clamp(-FULL, FULL);
-            }
-        }
+        self.slow_ticks >= self.config.calm_ticks
     }
 
     /// Adds the transfer term, which starts as whatever keeps the output where it was.

@@ -3,7 +3,7 @@
 //! **Feedforward** is the inverse of the model, ahead by its delay and half a tick of hold, with its offset, friction and
 //! dead time. **Feedback** puts two equal pairs of poles at a radius r with a damping; the radius is the largest, by bisection for each
 //! of a few dampings, at which every drive within ± 20 % of gain and of period keeps the margins, at every density of
-//! edges from 2 in a tick on; of the dampings that is taken which allows the largest integral gain, r⁴. The drive's delay is
+//! edges from 2 in a tick on; of the dampings that is taken whose corners follow best on trial. The drive's delay is
 //! predicted over. **Calm gains**, for rest and creep, are as slow as leaves the drive its own stiffness.
 //! What was found is [tried](super::check) on the model, and on the corners without friction, before it is offered.
 
@@ -124,18 +124,18 @@ pub fn autotune(
     estimator: &EstimatorChoice,
 ) -> Result<(AxisParams, Report), AutotuneError> {
     model.check()?;
-    let mut params = prepared(model, base, estimator)?;
+    let params = prepared(model, base, estimator)?;
     // Refuses a feed that leaves no room before anything is searched for.
     params.validate()?;
-    let (bandwidth, damping) = fastest(model, &mut params)?;
-    params.controller = with_feedback(
-        &params.controller,
-        model.place_pole_pairs(bandwidth, damping)?,
-    );
-    let calm = (CALM_SHARE * core::f64::consts::TAU / model.natural_period_s).min(bandwidth);
-    params.calm = calm_params(model, &params, calm)?;
+    let Chosen {
+        params,
+        bandwidth,
+        damping,
+        calm,
+        trial,
+        corner_trial,
+    } = best(model, params)?;
     let (nominal, worst) = margins(model, &params, &OCTAVES)?;
-    let (trial, corner_trial) = trials(model, &params)?;
     Ok((
         params,
         Report {
@@ -186,6 +186,7 @@ fn prepared(
             bias: -model.offset,
             feedforward_lead_s: model.delay_s + 0.5 / base.tick_hz,
             rest_band_mm: scale.mm_from_counts(REST_BAND_D),
+            integral_by_feed_mm_per_min: model.full_command_feed_mm_per_min * BY_FEED,
             ..inverse
         },
         filter: FilterParams {
@@ -208,12 +209,16 @@ fn prepared(
             stribeck_mm_per_min: model.stribeck_mm_per_min.max(0.02),
             dead_time_s: model.dead_time_s,
             least_command: model.resolution / 2.0,
+            lift_s: model.natural_period_s / 2.0,
             ..base.friction
         },
         calm: CalmParams::default(),
         ..*base
     })
 }
+
+/// Feed from about which on the integral goes with the feed, of full command: offset and friction are what counts below.
+const BY_FEED: f64 = 0.1;
 
 /// What is left of the disturbance that an observer has to expect where friction and offset are fed forward: of 0.1 to 3 this
 /// crept best on the 16K20F3.
@@ -291,36 +296,65 @@ pub fn margins(
     }))
 }
 
-/// The radius and the damping with the largest integral gain that keep the margins.
-fn fastest(model: &DriveModel, params: &mut AxisParams) -> Result<(f64, f64), AutotuneError> {
+/// A loop that may be offered.
+struct Chosen {
+    params: AxisParams,
+    bandwidth: f64,
+    damping: f64,
+    calm: f64,
+    trial: Trial,
+    corner_trial: Trial,
+}
+
+/// Of the fastest loops by their dampings, that which follows best on the corners.
+fn best(model: &DriveModel, mut params: AxisParams) -> Result<Chosen, AutotuneError> {
     let feedforward = params.controller;
-    let mut best: Option<(f64, f64)> = None;
-    let mut slowest = None;
+    let mut chosen: Option<Chosen> = None;
+    let mut refused = None;
     for damping in DAMPINGS {
+        let mut slowest = None;
         let mut keeps = |radius: f64| -> Result<bool, AutotuneError> {
             params.controller =
                 with_feedback(&feedforward, model.place_pole_pairs(radius, damping)?);
-            let (_, worst) = margins(model, params, &OCTAVES)?;
+            let (_, worst) = margins(model, &params, &OCTAVES)?;
             slowest = Some(worst);
             Ok(suffice(&worst, LEAST_GAIN_DB, LEAST_PHASE_DEG))
         };
-        if let Some(radius) = largest(model, &mut keeps)?
-            && best.is_none_or(|(other, _)| radius > other)
-        {
-            best = Some((radius, damping));
+        let Some(bandwidth) = largest(model, &mut keeps)? else {
+            refused = refused.or(slowest.map(AutotuneError::NoMargin));
+            continue;
+        };
+        params.controller =
+            with_feedback(&feedforward, model.place_pole_pairs(bandwidth, damping)?);
+        let calm = (CALM_SHARE * core::f64::consts::TAU / model.natural_period_s).min(bandwidth);
+        params.calm = calm_params(model, &params, calm)?;
+        match trials(model, &params) {
+            Ok((trial, corner_trial)) => {
+                let cost = |trial: &Trial| trial.peak_d + trial.standing_d;
+                let is_better = |other: &Chosen| cost(&corner_trial) < cost(&other.corner_trial);
+                if chosen.as_ref().is_none_or(is_better) {
+                    chosen = Some(Chosen {
+                        params,
+                        bandwidth,
+                        damping,
+                        calm,
+                        trial,
+                        corner_trial,
+                    });
+                }
+            }
+            Err(error @ AutotuneError::Trial(_)) => refused = Some(error),
+            Err(error) => return Err(error),
         }
     }
-    params.controller = feedforward;
-    match (best, slowest) {
-        (Some(best), _) => Ok(best),
-        (None, Some(worst)) => Err(AutotuneError::NoMargin(worst)),
-        (None, None) => Err(AutotuneError::Param(ParamError::Range(RangeError {
+    chosen.ok_or_else(|| {
+        refused.unwrap_or(AutotuneError::Param(ParamError::Range(RangeError {
             name: "dampings to try",
             value: 0.0,
             min: 1.0,
             max: 4.0,
-        }))),
-    }
+        })))
+    })
 }
 
 /// The largest radius that `keeps` what is asked for, if there is one: from the fastest down by steps, then by halving the
