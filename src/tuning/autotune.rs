@@ -111,8 +111,8 @@ const CALM_EDGES: f64 = 1.0;
 /// (from 1/√6 on): it would take stiffness from the drive, which friction that falls with speed needs. Of 0.43 to 0.66 this
 /// crept best on the 16K20F3.
 const CALM_SHARE: f64 = 0.49;
-/// Band at rest in which the integral holds, d: within a discrete the encoder shows nothing.
-const REST_BAND_D: f64 = 0.6;
+/// Band at rest, d: within a discrete the encoder shows nothing, and to overcome static friction takes a way of that size.
+const REST_BAND_D: f64 = 1.0;
 
 /// `base` with everything of the loop replaced by what suits `model`.
 ///
@@ -209,7 +209,7 @@ fn prepared(
             stribeck_mm_per_min: model.stribeck_mm_per_min.max(0.02),
             dead_time_s: model.dead_time_s,
             least_command: model.resolution / 2.0,
-            lift_s: model.natural_period_s / 2.0,
+            lift_s: model.natural_period_s,
             ..base.friction
         },
         calm: CalmParams::default(),

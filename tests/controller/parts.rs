@@ -79,6 +79,7 @@ fn friction_follows_the_stribeck_curve_by_direction_and_comes_at_its_rate() {
         least_speed: 0.001,
         rise_ticks: 10.0,
         lead_ticks: 2.5,
+        lift_ticks: 0.0,
     };
     let config = FrictionConfig::new(&friction).unwrap();
     for (speed, level) in [
@@ -161,5 +162,38 @@ fn filters_neither_kick_at_a_change_nor_leave_an_offset() {
             last = now;
         }
         assert!((last - end).abs() < 1e-8, "{last}");
+    }
+}
+
+#[test]
+fn at_rest_the_level_rises_until_the_axis_moves_and_begins_anew() {
+    let friction = Friction {
+        kinetic: [0.01; 2],
+        breakaway: [0.02; 2],
+        stribeck: 1.0,
+        least_speed: 0.001,
+        rise_ticks: 1.0,
+        lead_ticks: 1.0,
+        lift_ticks: 10.0,
+    };
+    let config = FrictionConfig::new(&friction).unwrap();
+    for side in [1, -1] {
+        let mut state = FrictionState::new();
+        let error = side * (3 << 16);
+        state.lift(&config, Some(error));
+        let mut level = 0;
+        for _ in 0..10 {
+            level = state.lift(&config, Some(error));
+        }
+        let reached = f64::from(side * level) / f64::from(1 << 30);
+        assert!((reached - 0.02).abs() < 1e-6, "{reached}");
+        // It does not grow for ever.
+        for _ in 0..100 {
+            level = state.lift(&config, Some(error));
+        }
+        let most = f64::from(side * level) / f64::from(1 << 30);
+        assert!((most - 0.032).abs() < 1e-6, "{most}");
+        assert_eq!(state.lift(&config, Some(error - side * (1 << 16))), 0);
+        assert_eq!(state.lift(&config, None), 0);
     }
 }

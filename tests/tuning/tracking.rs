@@ -75,6 +75,17 @@ fn the_full_machine_and_its_backlashes_outside_the_loop_are_followed_to_five_dis
 }
 
 #[test]
+fn off_nominal_the_full_machine_stays_bounded_and_nothing_oscillates() {
+    // 40 d are aimed at.
+    for (gain, period, bound) in [(0.8, 1.3, 65.0), (1.2, 0.75, 40.0)] {
+        let figures = run(&full(), &detuned(full(), gain, period), travel(6000.0));
+        assert!(figures.following.peak() <= bound, "{gain}: {figures:?}");
+        assert!(figures.output_swing < 1e-3, "{gain}: {figures:?}");
+        assert!(figures.rest_swing_d <= 1.0, "{gain}: {figures:?}");
+    }
+}
+
+#[test]
 fn backlash_inside_the_loop_stays_bounded_at_rest() {
     let mut scale = full();
     scale.carriage.backlash_mm = 0.003;
