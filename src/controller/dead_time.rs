@@ -56,6 +56,8 @@ pub struct State {
     left: u32,
     /// Q.30.
     owed: i64,
+    /// What of the last command the drive does not answer, friction apart, Q.30.
+    lost: i64,
 }
 
 impl State {
@@ -66,7 +68,15 @@ impl State {
             sign: 0,
             left: 0,
             owed: 0,
+            lost: 0,
         }
+    }
+
+    /// What of the last command the drive does not answer, friction apart, Q.30.
+    #[inline]
+    #[must_use]
+    pub const fn lost(&self) -> i64 {
+        self.lost
     }
 
     /// `law`, Q.30, with what is given back in this tick; `friction` is the part of it that moves nothing.
@@ -82,6 +92,11 @@ impl State {
             }
             self.sign = sign;
         }
+        self.lost = if self.left > 0 {
+            net.wrapping_sub(i64::from(friction))
+        } else {
+            0
+        };
         if resting {
             self.owed = 0;
             self.left = self.left.saturating_sub(1);
@@ -89,10 +104,9 @@ impl State {
         }
         if self.left > 0 {
             self.left = self.left.wrapping_sub(1);
-            let lost = net.wrapping_sub(i64::from(friction));
             self.owed = self
                 .owed
-                .wrapping_add(lost)
+                .wrapping_add(self.lost)
                 .clamp(MOST.wrapping_neg(), MOST);
             return law;
         }

@@ -93,7 +93,7 @@ pub enum Verdict {
 }
 
 /// The integral.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct State {
     /// Fractions of full command with 30 + [`INTEGRAL_SHIFT`] fractional bits.
     constant: i64,

@@ -181,11 +181,12 @@ impl Controller {
         }
     }
 
-    /// What of the last demand goes against friction alone: the rest of it is what moves the axis.
+    /// What of the last demand moves nothing: what goes against friction, and what falls into the drive's dead time.
     #[inline]
     #[must_use]
     pub const fn friction(&self) -> Command {
-        self.friction.level()
+        let lost = saturate(self.dead_time.lost());
+        Command::from_bits(self.friction.level().to_bits().saturating_add(lost))
     }
 
     /// The feedback part through the filters, and what passes by them.

@@ -61,14 +61,15 @@ fn off_nominal_the_error_stays_below_40_and_nothing_oscillates() {
 }
 
 #[test]
-fn the_full_machine_and_its_backlashes_outside_the_loop_are_followed_to_five_discretes() {
+fn the_full_machine_and_its_backlashes_outside_the_loop_are_followed_to_twenty_discretes() {
     let mut outside = full();
     outside.carriage.backlash_mm = 0.003;
     let mut coupling = full();
     coupling.mount.coupling_play_mm = 0.0005;
     for actual in [full(), outside, coupling] {
         let figures = run(&full(), &actual, travel(9000.0));
-        assert!(figures.following.peak() <= 5.0, "{figures:?}");
+        // 20 d are asked for; 5 d would be better still.
+        assert!(figures.following.peak() <= 20.0, "{figures:?}");
         assert!(figures.standing.peak() <= 1.0, "{figures:?}");
         assert!(figures.rest_swing_d <= 1.0, "{figures:?}");
     }
