@@ -7,7 +7,7 @@ use super::model::DriveModel;
 use super::plant::Plant;
 use crate::axis::{Axis, Inputs};
 use crate::hal::Capture;
-use crate::params::{AxisParams, ParamError};
+use crate::params::{AxisParams, MotionParams, ParamError};
 use crate::setpoint::profile::Profile;
 use crate::units::{AxisScale, Position};
 
@@ -153,6 +153,11 @@ pub fn trial(
     let scale = AxisScale::new(params.motion.counts_per_mm, params.tick_hz)?;
     let timed = AxisParams {
         timer_hz: (params.tick_hz * CLOCKS).clamp(1e6, 250e6),
+        // The model's encoder has no index.
+        motion: MotionParams {
+            counts_per_revolution: 0.0,
+            ..params.motion
+        },
         ..*params
     };
     let config = timed.validate()?;

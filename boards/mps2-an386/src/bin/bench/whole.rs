@@ -12,7 +12,6 @@ use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::paths::{Choice, Paths};
 use leadscrew::hal::{Capture, Encoder};
 use leadscrew::params::{AxisConfig, AxisParams, FilterParams, FrictionParams, ParamError};
-use leadscrew::supervisor::SupervisorParams;
 use leadscrew::telemetry::Record;
 use leadscrew::units::Position;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
@@ -118,10 +117,6 @@ fn config(
             backlash_mm: 0.003,
             screw_table: 1.0,
             ..CompensationParams::default()
-        },
-        supervisor: SupervisorParams {
-            counts_per_revolution: machine.encoder.disc.edges_per_revolution,
-            ..SupervisorParams::default()
         },
         ..scenario.axis_params(machine, observer)?
     };
