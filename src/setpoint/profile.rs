@@ -1,4 +1,4 @@
-//! Moves from rest to rest by a distance: [`Plan`]s that start wherever the axis stands then.
+//! Moves from rest to rest by a distance: [`Profile`]s that start wherever the axis stands then.
 
 pub use super::limits::Limits;
 pub use super::plan::{MAX_TICKS, Plan as Profile, PlanError, STATE_FRAC};

@@ -1,6 +1,6 @@
 //! Planned motion: a table of constant-jerk segments from an exact state to an exact end at rest.
 //!
-//! A plan changes the velocity to a cruising velocity in the fastest way that whole ticks allow ([`ramp`]), cruises
+//! A plan changes the velocity to a cruising velocity in the fastest way that whole ticks allow (`ramp`), cruises
 //! for whole ticks, and changes it to zero. The way of both changes and the cruise is a continuous and growing
 //! function of the cruising velocity but for one thing, below. If the way at the velocity limit without a cruise is too short for the
 //! target, the cruise is as many ticks as are missing, rounded up; then the cruising velocity is found at which the

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Run-in and run-out are functions of the spindle's angle alone, not of time, so the phase of the thread does not depend
-//! on the speed, nor on how it changes; where the run-in begins is [planned](plan) outside the tick from the index. Velocity
+//! on the speed, nor on how it changes; where the run-in begins is planned outside the tick from the index. Velocity
 //! and acceleration are those of the spindle's estimate by the chain rule. A spindle that gives no signal, turns back,
 //! leaves the speeds planned for or loses counts ends the pass: [`SpindleTrouble`].
 

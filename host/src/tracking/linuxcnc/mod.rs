@@ -6,7 +6,7 @@
 //! last edges of two ticks ─► feedback-deriv ┘
 //! ```
 //!
-//! [`law`] is the law by its manual page; [`bench`] feeds it as LinuxCNC would, on the simulated machine; [`relay`]
+//! [`law`] is the law by its manual page; [`mod@bench`] feeds it as LinuxCNC would, on the simulated machine; [`relay`]
 //! tunes it as its own autotuner does, [`hand`] as well as it can be tuned.
 
 pub mod bench;
