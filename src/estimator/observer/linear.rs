@@ -6,7 +6,7 @@
 
 use super::Model;
 use super::config::Config;
-use super::design::MEAN_AGE;
+use super::design::{Dynamics, MEAN_AGE, Matrix};
 use crate::tuning::complex::Complex;
 use crate::units::Velocity;
 
@@ -83,24 +83,13 @@ impl Linear {
     }
 
     /// F.
-    fn transition(&self) -> [[f64; 4]; 4] {
-        let by = [0.0, -self.stiffness, -self.damping, 1.0];
-        let row = |start: [f64; 4], share: f64| {
-            let [x, v, a, d] = start;
-            let [by_x, by_v, by_a, by_d] = by;
-            [
-                x + share * by_x,
-                v + share * by_v,
-                a + share * by_a,
-                d + share * by_d,
-            ]
+    fn transition(&self) -> Matrix {
+        let dynamics = Dynamics {
+            jerk: [0.0, -self.stiffness, -self.damping, 1.0],
+            jerk_noise: 0.0,
+            disturbance_noise: 0.0,
         };
-        [
-            row([1.0, 1.0, 0.5, 0.0], 1.0 / 6.0),
-            row([0.0, 1.0, 1.0, 0.0], 0.5),
-            row([0.0, 0.0, 1.0, 0.0], 1.0),
-            [0.0, 0.0, 0.0, 1.0],
-        ]
+        dynamics.transition()
     }
 }
 
