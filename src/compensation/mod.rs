@@ -219,6 +219,7 @@ impl<'m> Compensation<'m> {
                 rounded::<{ VELOCITY_FRAC - Acceleration::FRAC_NBITS }>(acceleration),
             )),
             jerk: commanded.jerk,
+            turn: commanded.turn,
         }
     }
 

@@ -33,4 +33,32 @@ pub struct Setpoint {
     pub acceleration: Acceleration,
     /// Jerk in force from this tick to the next, d/tick³; saturates at the range of its format.
     pub jerk: Jerk,
+    /// What comes after that jerk.
+    pub turn: Turn,
+}
+
+/// When the jerk of a setpoint changes next, as far as its source knows: a command acts some ticks after it is given,
+/// and is meant for the motion of then.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// Ticks for which the jerk stays as it is.
+    pub ticks: u32,
+    /// The jerk after them, d/tick³.
+    pub jerk: Jerk,
+}
+
+impl Turn {
+    /// Farthest that a source need look ahead, ticks.
+    pub const HORIZON: u32 = 64;
+    /// Not before the horizon, or not known.
+    pub const NONE: Self = Self {
+        ticks: u32::MAX,
+        jerk: Jerk::ZERO,
+    };
+}
+
+impl Default for Turn {
+    fn default() -> Self {
+        Self::NONE
+    }
 }

@@ -11,8 +11,8 @@
 //! A rate beyond the axis' largest feed is [`Fault::SetpointLost`](crate::supervisor::Fault::SetpointLost): the
 //! pulses of that tick and of all later ones are not taken, so the axis comes to rest, and no setpoint ever jumps.
 
-use super::Setpoint;
 use super::ratio::{Carried, MAX_STEP, Ratio};
+use super::{Setpoint, Turn};
 use crate::estimator::saturate;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
@@ -191,6 +191,7 @@ impl StepDir {
                 Acceleration::FRAC_NBITS,
             )),
             jerk: Jerk::from_bits(scaled(jerk, unit, Jerk::FRAC_NBITS)),
+            turn: Turn::NONE,
         }
     }
 }

@@ -7,8 +7,8 @@
 
 use core::fmt;
 
-use super::Setpoint;
 use super::plan::{Plan, STATE_FRAC, Segment, State};
+use super::{Setpoint, Turn};
 use crate::units::{Acceleration, Jerk, Position, Velocity};
 
 /// Why a plan was not taken. What runs goes on.
@@ -77,10 +77,9 @@ struct Phase {
 
 impl Phase {
     fn new(segment: &Segment, creep: i64) -> Self {
-        let jerk = rounded::<{ STATE_FRAC - Jerk::FRAC_NBITS }>(segment.jerk);
         Self {
             remaining_ticks: segment.ticks,
-            jerk: Jerk::from_bits(jerk as i32),
+            jerk: jerk_of(segment),
             position_step: segment.sixth().wrapping_add(creep),
             half_jerk: segment.jerk.wrapping_shr(1),
         }
@@ -157,10 +156,46 @@ impl Trajectory {
         if self.remaining_ticks != 0 {
             self.advance();
         }
-        if self.waiting_start == Some(now) {
-            self.start();
+        let mut until_start = u32::MAX;
+        if let Some(start) = self.waiting_start {
+            until_start = start.wrapping_sub(now);
+            if until_start == 0 {
+                self.start();
+                until_start = u32::MAX;
+            }
         }
-        self.setpoint()
+        let mut setpoint = self.setpoint();
+        let until_phase = self.phase.remaining_ticks.wrapping_sub(1);
+        if until_start.min(until_phase) < Turn::HORIZON {
+            setpoint.turn = self.turn(until_start);
+        }
+        setpoint
+    }
+
+    /// The change of the jerk that comes next, where a waiting plan is to start in `until_start` ticks.
+    #[inline(never)]
+    fn turn(&self, until_start: u32) -> Turn {
+        let phase_ticks = match self.phase.remaining_ticks {
+            0 => u32::MAX,
+            ticks => ticks,
+        };
+        let (ticks, plan, segment) = if until_start <= phase_ticks {
+            (until_start, self.running ^ 1, 0)
+        } else {
+            (phase_ticks, self.running, self.next_segment)
+        };
+        let is_last = ticks == self.remaining_ticks && plan == self.running;
+        let next = self
+            .plans
+            .get(plan)
+            .and_then(|plan| plan.segments.get(segment));
+        Turn {
+            ticks,
+            jerk: match next {
+                Some(next) if !is_last => jerk_of(next),
+                _ => Jerk::ZERO,
+            },
+        }
     }
 
     fn advance(&mut self) {
@@ -253,8 +288,14 @@ impl Trajectory {
             velocity: Velocity::from_bits(velocity as i32),
             acceleration: Acceleration::from_bits(acceleration as i32),
             jerk: self.phase.jerk,
+            turn: Turn::NONE,
         }
     }
+}
+
+/// The jerk of a segment as the feedforward sees it.
+const fn jerk_of(segment: &Segment) -> Jerk {
+    Jerk::from_bits(rounded::<{ STATE_FRAC - Jerk::FRAC_NBITS }>(segment.jerk) as i32)
 }
 
 /// `value` / 2^`BITS` to nearest.

@@ -4,7 +4,7 @@ use leadscrew::controller::config::Gains;
 use leadscrew::controller::{Config, Controller};
 use leadscrew::estimator::{Estimate, Lags, Variances};
 use leadscrew::output::ActiveLimits;
-use leadscrew::setpoint::Setpoint;
+use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::units::{Acceleration, Command, Jerk, Lag, Position, Velocity};
 use proptest::prelude::*;
 
@@ -72,6 +72,7 @@ fn any_setpoint() -> impl Strategy<Value = Setpoint> {
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::from_bits(acceleration),
             jerk: Jerk::from_bits(jerk),
+            turn: Turn::NONE,
         },
     )
 }

@@ -4,7 +4,7 @@ use leadscrew::controller::config::Gains;
 use leadscrew::controller::{Config, Controller};
 use leadscrew::estimator::{Estimate, EstimatorConfig};
 use leadscrew::params::AxisParams;
-use leadscrew::setpoint::Setpoint;
+use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::tuning::DriveModel;
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
@@ -70,6 +70,7 @@ fn signals() -> impl Strategy<Value = Signals> {
             velocity: Velocity::from_num::<f64>(velocity),
             acceleration: Acceleration::from_num::<f64>(acceleration),
             jerk: Jerk::from_num::<f64>(jerk),
+            turn: Turn::NONE,
         },
     );
     let estimate = (-200.0..200.0, -5.0..5.0).prop_map(|(velocity, acceleration)| Estimate {

@@ -1,8 +1,8 @@
 //! Every tick of a move: within limits, consistent, monotone, and at the target in the end.
 
-use leadscrew::setpoint::Setpoint;
 use leadscrew::setpoint::profile::Limits;
 use leadscrew::setpoint::trajectory::Trajectory;
+use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
@@ -25,6 +25,7 @@ fn numbers(setpoint: &Setpoint) -> (f64, f64, f64, f64) {
         velocity,
         acceleration,
         jerk,
+        ..
     } = *setpoint;
     (
         position.to_num(),
@@ -92,6 +93,29 @@ fn assert_consistent(planned: &Move, from: &Setpoint, to: &Setpoint) {
     );
 }
 
+/// What is announced of the jerk comes to pass, and no change of it comes unannounced.
+fn assert_announced(setpoints: &[Setpoint]) {
+    let horizon = Turn::HORIZON as usize;
+    for (at, setpoint) in setpoints.iter().enumerate() {
+        let following = setpoints[at..].iter().take(horizon + 1);
+        let until_change = following
+            .take_while(|next| next.jerk == setpoint.jerk)
+            .count();
+        let turn = setpoint.turn;
+        if turn.ticks as usize <= horizon {
+            let ticks = turn.ticks as usize;
+            // Two segments of a plan may have the same jerk.
+            assert!(ticks <= until_change, "tick {at}: {turn:?}");
+            if let Some(turned) = setpoints.get(at + ticks) {
+                assert_eq!(turned.jerk, turn.jerk, "tick {at}");
+            }
+        } else {
+            let left = setpoints.len() - at;
+            assert!(until_change >= horizon.min(left), "tick {at}: {turn:?}");
+        }
+    }
+}
+
 fn assert_arrived(setpoint: &Setpoint, target: Position) {
     let arrived = Setpoint {
         position: target,
@@ -147,6 +171,11 @@ proptest! {
         let rounding = lsb::<Velocity>() / 2.0 + lsb::<Acceleration>() / 4.0 + lsb::<Jerk>() / 12.0;
         let unexplained = unexplained_velocity(&planned, &seen);
         prop_assert!(unexplained <= rounding + CREEP, "{} d/tick", unexplained);
+    }
+
+    #[test]
+    fn changes_of_the_jerk_are_announced(planned in move_within(LONGEST)) {
+        assert_announced(&setpoints(&planned));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The follower of velocities: limits, exact landing, and how far a stop goes.
 
-use leadscrew::setpoint::Setpoint;
 use leadscrew::setpoint::follower::{Config, Follower};
 use leadscrew::setpoint::profile::Limits;
+use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::units::{Acceleration, Jerk, Position, Velocity};
 use proptest::prelude::*;
 
@@ -33,6 +33,7 @@ fn state(limits: &Limits, velocity: f64, acceleration: f64) -> Setpoint {
         velocity: Velocity::from_num(velocity),
         acceleration: Acceleration::from_num(acceleration),
         jerk: Jerk::ZERO,
+        turn: Turn::NONE,
     }
 }
 
@@ -214,6 +215,7 @@ proptest! {
             velocity: Velocity::from_bits(bits.1),
             acceleration: Acceleration::from_bits(bits.2),
             jerk: Jerk::from_bits(bits.3),
+            turn: Turn::NONE,
         };
         let mut follower = Follower::new(Config::new(&limits));
         follower.take_over(&start);

@@ -1,8 +1,8 @@
 //! The queue of one running and one waiting move.
 
-use leadscrew::setpoint::Setpoint;
 use leadscrew::setpoint::profile::{Limits, Profile};
 use leadscrew::setpoint::trajectory::{QueueError, Trajectory};
+use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::units::Position;
 
 fn plan(distance: i32) -> Profile {
@@ -28,10 +28,11 @@ fn a_move_waits_for_its_start_and_ends_after_its_duration() {
     trajectory.step(0);
     trajectory.queue(&profile, 50, 0).unwrap();
     let before = step_through(&mut trajectory, 1, 49);
-    assert_eq!(
-        (before, trajectory.is_moving()),
-        (Setpoint::default(), false)
-    );
+    let announced = Setpoint {
+        turn: before.turn,
+        ..Setpoint::default()
+    };
+    assert_eq!((before, trajectory.is_moving()), (announced, false));
     let start = trajectory.step(50);
     assert_eq!(
         (start.position, start.velocity.to_bits()),
@@ -41,6 +42,11 @@ fn a_move_waits_for_its_start_and_ends_after_its_duration() {
         start.jerk > 0 && trajectory.is_moving(),
         "the jerk in force from this tick on"
     );
+    let turn = Turn {
+        ticks: 1,
+        jerk: start.jerk,
+    };
+    assert_eq!(before.turn, turn, "the start is announced");
     let end = step_through(&mut trajectory, 51, 50 + profile.ticks());
     assert_eq!(
         end,

@@ -17,8 +17,8 @@ mod stopping;
 
 pub use config::Config;
 
-use super::Setpoint;
 use super::profile::STATE_FRAC;
+use super::{Setpoint, Turn};
 use crate::units::{Acceleration, Jerk, Position, Velocity};
 
 const POSITION_SHIFT: u32 = STATE_FRAC - Position::FRAC_NBITS;
@@ -163,6 +163,7 @@ impl Follower {
             velocity: Velocity::from_bits(rounded::<VELOCITY_SHIFT>(self.velocity)),
             acceleration: Acceleration::from_bits(rounded::<ACCELERATION_SHIFT>(self.acceleration)),
             jerk: Jerk::from_bits(rounded::<JERK_SHIFT>(jerk)),
+            turn: Turn::NONE,
         }
     }
 }
