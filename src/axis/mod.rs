@@ -90,7 +90,7 @@ impl<'m> Axis<'m> {
         outputs.count = observation.count;
         // What goes against friction does not move the drive that an observer counts on.
         let command =
-            was_enabled.then(|| (self.output.command()).saturating_sub(self.controller.friction()));
+            was_enabled.then(|| (self.output.command()).saturating_sub(self.controller.withheld()));
         let mut evidence = Evidence {
             observation: &observation,
             edges: &self.edges,
@@ -102,6 +102,8 @@ impl<'m> Axis<'m> {
             .estimators
             .feedback(&outputs.estimate, observation.position());
 
+        let estimate = self.estimators.fed_back(&outputs.estimate);
+        self.controller.note(observation.delta, command, estimate);
         let told = self.output.command();
         let mut left = Lines::default();
         let lines = self.homing.without_limit_left(&inputs.lines, &mut left);
@@ -297,10 +299,23 @@ impl<'m> Axis<'m> {
         &self.outputs
     }
 
-    /// What of the last command goes against friction.
+    /// Ticks from queueing a motion from rest to its start, at least 1, that the drive needs to be ready for it: its delay,
+    /// and the dead time of a reversal. A motion that is queued later starts as well, but breaks away late.
     #[must_use]
-    pub const fn friction(&self) -> Command {
-        self.controller.friction()
+    pub const fn notice_ticks(&self) -> u32 {
+        self.config.controller.notice_ticks()
+    }
+
+    /// What of the last command an observer of the nominal drive is not told: see [`Controller::withheld`].
+    #[must_use]
+    pub const fn withheld(&self) -> Command {
+        self.controller.withheld()
+    }
+
+    /// By which shares the drive asks for more of the feedforward's terms of v, a and j than they give, as learned in motion.
+    #[must_use]
+    pub fn learned(&self) -> [f64; 3] {
+        self.controller.learned()
     }
 
     /// The configuration in force.

@@ -5,7 +5,10 @@ use super::biquad::Section;
 use super::dead_time::Config as DeadTimeConfig;
 use super::filter::{Config as FilterConfig, MAX_SECTIONS, MAX_TAPS};
 use super::friction::{Config as FrictionConfig, Friction};
-use super::integral::{Config as IntegralConfig, INTEGRAL_SHIFT};
+use super::integral::INTEGRAL_SHIFT;
+use super::learning::Config as LearningConfig;
+use super::rest::{Config as RestConfig, Rest};
+use super::turning::Config as TurningConfig;
 use crate::estimator::Delay;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
@@ -48,8 +51,10 @@ pub struct Extras {
     pub friction: Friction,
     /// Following error within which the integral holds while the setpoint rests, d.
     pub rest_band_d: f64,
-    /// Speed from which on the integral goes with the speed, d/tick; 0 for never.
-    pub integral_by_speed: f64,
+    /// Ticks in which a push against static friction at rest rises by it; 0 for never.
+    pub lift_ticks: f64,
+    /// What a command is for that the feedforward's terms are not, 1σ, fractions of full command; 0: nothing is learned.
+    pub learning_noise: f64,
     /// Ticks for which the drive stands at a reversal of its command.
     pub dead_ticks: f64,
     /// Command either side of zero that the drive does not answer to.
@@ -98,13 +103,19 @@ pub struct Config {
     /// Ticks for which both have to be smaller.
     pub(super) calm_ticks: u32,
     deadband: i32,
-    pub(super) integral: IntegralConfig,
+    pub(super) learning: LearningConfig,
+    /// What the integral may be off by after a rest: static friction before the filters, Q.30.
+    pub(super) held: i32,
+    pub(super) rest: RestConfig,
+    /// Q.30.
+    pub(super) bias: i32,
     pub(super) transfer_decay: u32,
     pub(super) filter: FilterConfig,
     /// Where there are filters, the feedforward and the bias, which pass by them.
     feedforward: [i32; SETPOINTS],
     feedforward_shift: u32,
     feedforward_offset: i64,
+    pub(super) turning: TurningConfig,
     pub(super) friction: FrictionConfig,
     pub(super) dead_time: DeadTimeConfig,
 }
@@ -175,18 +186,22 @@ impl Config {
             None => (moving, -1, 0, u32::MAX),
         };
         let transfer = checked("transfer_ticks", transfer_ticks, 1.0, 1e6)?;
-        let rest_band = checked("rest_band_d", extras.rest_band_d, 0.0, 1000.0)?;
-        let rest_band = if rest_band > 0.0 {
-            scaled(rest_band, FollowingError::FRAC_NBITS)
-        } else {
-            -1
-        };
         let held = extras.friction.breakaway.into_iter().fold(0.0, f64::max);
+        let rest = Rest {
+            band: extras.rest_band_d,
+            held,
+            lift_ticks: extras.lift_ticks,
+            delay_ticks: gains.feedforward_lead,
+            per_jerk: gains.jerk_feedforward,
+        };
         // Before the filters, which let a steady command through by 1/(1 + Σ taps).
         let held = held * (1.0 + extras.taps.iter().sum::<f64>());
         Ok(Self {
             moving,
-            integral: IntegralConfig::new(extras.integral_by_speed, rest_band, held)?,
+            learning: LearningConfig::new(gains, delay, bias_share, extras.learning_noise)?,
+            held: scaled(held.min(1.9), Command::FRAC_NBITS),
+            rest: RestConfig::new(&rest)?,
+            bias: scaled(bias_share, Command::FRAC_NBITS),
             calm,
             calm_speed,
             calm_error,
@@ -195,6 +210,7 @@ impl Config {
             feedforward_shift,
             feedforward_offset: shifted(feedforward_offset, feedforward_shift),
             filter,
+            turning: TurningConfig::new(gains),
             friction: FrictionConfig::new(&extras.friction)?,
             dead_time: DeadTimeConfig::new(extras.dead_ticks, bias_share, extras.least_command)?,
             deadband: scaled(
@@ -203,6 +219,12 @@ impl Config {
             ),
             transfer_decay: libm::round(libm::ldexp(libm::exp(-1.0 / transfer), 31)) as u32,
         })
+    }
+
+    /// Ticks from the announcement of a motion from rest to its start, at least 1, that make it ready.
+    #[must_use]
+    pub const fn notice_ticks(&self) -> u32 {
+        self.friction.notice().saturating_add(1)
     }
 
     /// The error less the deadband, which does not step at its border.
@@ -342,7 +364,7 @@ const MAX_GAIN: f64 = 1e6;
 const MAX_WEIGHT_SHIFT: u32 = 31;
 
 /// A gain as the factor from a signal with `frac` fractional bits to a command.
-fn weight(gain: f64, frac: u32) -> f64 {
+pub(super) fn weight(gain: f64, frac: u32) -> f64 {
     libm::ldexp(
         gain,
         Command::FRAC_NBITS

@@ -5,11 +5,14 @@
 //! v + τ·a + τ²·j/2, so that the level stands when the motion starts or reverses. It comes and goes at a bounded rate, and
 //! so passes zero speed smoothly; below a least speed, and at rest, it is let go.
 //!
-//! In motion it acts on the setpoint alone: an error, or noise of an estimate, cannot make it chatter. At rest the
-//! setpoint has no direction, and a standing error is held by static friction. There the level rises evenly in the direction of the error
-//! until the axis lets go, and is gone when the error is within its band: an integral would still push then, and throw the axis
-//! to the other side, as friction falls with speed.
+//! It acts on the setpoint alone: an error, or noise of an estimate, cannot make it chatter. At rest the setpoint has no
+//! direction, and there is no level; what is done about a standing error is in [`rest`](super::rest).
+//!
+//! Before a motion from rest, which a planned one announces, half of the kinetic level stands for as long as the drive's dead time: a reversal
+//! of the command is over when the motion starts.
 
+use super::learning::State as Learned;
+use super::turning::{change, rest_of};
 use crate::estimator::saturate;
 use crate::setpoint::Setpoint;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
@@ -29,8 +32,8 @@ pub struct Friction {
     pub rise_ticks: f64,
     /// How far ahead the setpoint is looked at, ticks.
     pub lead_ticks: f64,
-    /// Ticks in which the level at rest rises to the largest one; 0: it does not.
-    pub lift_ticks: f64,
+    /// Ticks for which the drive stands at a reversal of its command.
+    pub dead_ticks: f64,
 }
 
 /// Quantised friction.
@@ -46,9 +49,8 @@ pub struct Config {
     per_stribeck: u32,
     /// τ, Q.16, and τ²/2, Q.8.
     lead: [i32; 2],
-    /// Rise of the level at rest in a tick, and its bound, Q.30.
-    lift: i32,
-    most_lift: i32,
+    /// Ticks before a start from rest from which on it is prepared for.
+    notice: u32,
 }
 
 /// v/v_s beyond which the excess is gone, Q.8.
@@ -79,16 +81,13 @@ impl Config {
         let stribeck = checked("stribeck_d_per_tick", friction.stribeck, 2.5e-4, 2e3)?;
         let least = checked("friction_least_d_per_tick", friction.least_speed, 0.0, 2e3)?;
         let lead = checked("friction_lead_ticks", friction.lead_ticks, 0.0, 1000.0)?;
-        let lift = checked("friction_lift_ticks", friction.lift_ticks, 0.0, 1e6)?;
-        let per_tick = if lift == 0.0 { 0.0 } else { largest / lift };
-        let most_lift = (largest * MOST_LIFT).min(1.0);
+        let dead = checked("dead_time_ticks", friction.dead_ticks, 0.0, 100.0)?;
         Ok(Self {
-            lift: fixed(per_tick, Command::FRAC_NBITS) as i32,
-            most_lift: fixed(most_lift, Command::FRAC_NBITS) as i32,
             levels,
             slew: fixed(largest / rise, Command::FRAC_NBITS).max(1.0) as i32,
             least_speed: fixed(least, Velocity::FRAC_NBITS) as u32,
             per_stribeck: fixed(1.0 / stribeck, 20) as u32,
+            notice: libm::ceil(lead + dead) as u32,
             lead: [
                 fixed(lead, LEAD_FRAC) as i32,
                 fixed(lead * lead / 2.0, SQUARE_FRAC) as i32,
@@ -103,11 +102,17 @@ impl Config {
         self.slew != 0
     }
 
-    /// Static friction is overcome at rest.
+    /// Ticks before a start from rest from which on it is prepared for.
+    #[must_use]
+    pub const fn notice(&self) -> u32 {
+        self.notice
+    }
+
+    /// A motion from rest is about to start: it is prepared for.
     #[inline]
     #[must_use]
-    pub const fn lifts(&self) -> bool {
-        self.lift != 0
+    pub fn is_due(&self, setpoint: &Setpoint) -> bool {
+        setpoint.turn.ticks <= self.notice
     }
 
     /// The level that a motion asks for.
@@ -116,7 +121,7 @@ impl Config {
         let velocity = self.velocity_ahead(setpoint);
         let speed = velocity.unsigned_abs();
         if speed <= self.least_speed {
-            return 0;
+            return self.notice_of(setpoint);
         }
         let [forward, backward] = &self.levels;
         let [kinetic, excess] = *if velocity > 0 { forward } else { backward };
@@ -143,18 +148,47 @@ impl Config {
         let [lead, half_square] = self.lead.map(i64::from);
         let by_acceleration = i64::from(setpoint.acceleration.to_bits()).wrapping_mul(lead);
         let by_jerk = i64::from(setpoint.jerk.to_bits()).wrapping_mul(half_square);
-        saturate(
-            i64::from(setpoint.velocity.to_bits())
-                .wrapping_add(by_acceleration.wrapping_shr(BY_ACCELERATION))
-                .wrapping_add(by_jerk.wrapping_shr(BY_JERK)),
-        )
+        let mut velocity = i64::from(setpoint.velocity.to_bits())
+            .wrapping_add(by_acceleration.wrapping_shr(BY_ACCELERATION))
+            .wrapping_add(by_jerk.wrapping_shr(BY_JERK));
+        if let Some(rest) = rest_of(self.lead[0] as u32, LEAD_FRAC, setpoint) {
+            velocity = velocity.wrapping_add(gained(rest, setpoint));
+        }
+        saturate(velocity)
+    }
+
+    /// What turns the sign of the command in time, before a motion from rest: a drive's dead time is over when it starts.
+    #[cold]
+    #[inline(never)]
+    fn notice_of(&self, setpoint: &Setpoint) -> i32 {
+        if !self.is_due(setpoint) || setpoint.velocity != Velocity::ZERO {
+            return 0;
+        }
+        let jerk = setpoint.turn.jerk;
+        let [forward, backward] = &self.levels;
+        let [kinetic, _] = if jerk > Jerk::ZERO { forward } else { backward };
+        kinetic
+            .wrapping_shr(NOTICE_SHIFT)
+            .wrapping_mul(jerk.to_bits().signum())
     }
 }
 
-/// Bound of the level at rest, of the largest level: friction may have grown.
-const MOST_LIFT: f64 = 1.6;
-/// Change of the following error that shows that the axis has let go, Q15.16.
-const LEAST_WAY: i32 = 3 << 14;
+/// r²/2·Δj: what a change of the jerk `rest` ticks (Q.16) before adds to a velocity, Q11.20.
+#[cold]
+#[inline(never)]
+fn gained(rest: u32, setpoint: &Setpoint) -> i64 {
+    const BY_JERK: u32 = Jerk::FRAC_NBITS + SQUARE_FRAC - Velocity::FRAC_NBITS;
+    let half_square = u64::from(rest)
+        .wrapping_mul(u64::from(rest))
+        .wrapping_shr(2 * LEAD_FRAC + 1 - SQUARE_FRAC);
+    i64::from(change(setpoint))
+        .wrapping_mul(half_square.cast_signed())
+        .wrapping_shr(BY_JERK)
+}
+
+/// The level before a start, of the kinetic one: 2⁻ⁿ.
+const NOTICE_SHIFT: u32 = 1;
+
 /// Fractional bits of τ.
 const LEAD_FRAC: u32 = 16;
 /// Fractional bits of τ²/2.
@@ -164,18 +198,13 @@ const SQUARE_FRAC: u32 = 8;
 #[derive(Clone, Debug, Default)]
 pub struct State {
     level: i32,
-    /// Following error at which the level at rest began to rise, Q15.16.
-    lifted_at: i32,
 }
 
 impl State {
     /// No level.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            level: 0,
-            lifted_at: 0,
-        }
+        Self { level: 0 }
     }
 
     /// The level in force.
@@ -185,36 +214,20 @@ impl State {
         Command::from_bits(self.level)
     }
 
-    /// One tick; the level after it.
+    /// Lets the level go: at rest.
     #[inline]
-    pub fn step(&mut self, config: &Config, setpoint: &Setpoint) -> i32 {
-        let gap = config.target(setpoint).wrapping_sub(self.level);
+    pub const fn let_go(&mut self) {
+        self.level = 0;
+    }
+
+    /// One tick; the level after it. Friction is torque: where the drive's gain turned out to be another, so does its command.
+    #[inline]
+    pub fn step(&mut self, config: &Config, setpoint: &Setpoint, learned: &Learned) -> i32 {
+        let target = config.target(setpoint);
+        let gap = learned.scaled(target).wrapping_sub(self.level);
         self.level = self
             .level
             .wrapping_add(gap.max(config.slew.wrapping_neg()).min(config.slew));
-        self.level
-    }
-
-    /// One tick at rest, with a standing `error`, Q15.16, or none; the level after it.
-    #[inline]
-    pub fn lift(&mut self, config: &Config, error: Option<i32>) -> i32 {
-        let Some(error) = error else {
-            self.level = 0;
-            return 0;
-        };
-        let has_moved = error.wrapping_sub(self.lifted_at).saturating_abs() > LEAST_WAY;
-        let is_against = self.level.signum().wrapping_mul(error.signum()) < 0;
-        if has_moved || is_against {
-            self.lifted_at = error;
-            self.level = 0;
-        } else {
-            let step = config.lift.wrapping_mul(error.signum());
-            let most = config.most_lift;
-            self.level = self
-                .level
-                .saturating_add(step)
-                .clamp(most.wrapping_neg(), most);
-        }
         self.level
     }
 }

@@ -4,13 +4,15 @@
 //! u = filtered( kp·e + ki·Σe + kd·Δe                PID on position, e = x_set − x
 //!             + kv·(v_ref − v̂) + ka·(a_ref − â) )   the papers' corrective links (P2)
 //!   + ff_v·v⁺ + ff_a·a⁺ + ff_j·j                    feedforward
-//!   + friction(v⁺) + bias
+//!   + learned shares of these three terms
+//!   + friction(v⁺), at rest a push + bias
 //!   + transfer                                      decays to zero, see below
 //! ```
 //!
 //! The feedforward is for the instant at which the command arrives: v⁺ = v + τ·a + τ²·j/2 and a⁺ = a + τ·j, the setpoint
-//! τ ahead ([`config::Gains::feedforward_lead`]), folded into the weights. [`filter`] holds what the feedback part passes
-//! through, [`friction`] the feedforward against friction; both cost next to nothing where they are off.
+//! τ ahead ([`config::Gains::feedforward_lead`]), folded into the weights; [`turning`] adds what a change of the jerk within τ makes of it, and
+//! [`learning`] what the drive shows it to be short of. [`filter`] holds what the feedback part passes through, [`friction`] the
+//! feedforward against friction, [`rest`] what is done about a standing error; all cost next to nothing where they are off.
 //!
 //! An estimate holds for an instant `lag` ticks ago, so the links compare it with the setpoint of that
 //! instant: v_ref = v − lag_v·a + ⟨lag_v²⟩·j/2, a_ref = a − lag_a·j, where ⟨lag_v²⟩ is the mean square age of
@@ -20,8 +22,7 @@
 //! At enable and at a change of parameters the law would jump; the jump is taken up by `transfer`,
 //! which then decays geometrically, so the output stays continuous. Integration stops while the output
 //! is limited in the direction in which the error would drive it further, and at rest where static friction holds the axis
-//! ([`integral`], [`friction`]); the integral itself stays within ±1, and as much again at sixteen times the speed from which on it goes
-//! with the speed.
+//! ([`rest`]); the [`integral`] itself stays within ±1.
 
 pub mod biquad;
 pub mod config;
@@ -29,7 +30,10 @@ pub mod dead_time;
 pub mod filter;
 pub mod friction;
 pub mod integral;
+pub mod learning;
 pub mod params;
+pub mod rest;
+pub mod turning;
 
 pub use config::Config;
 
@@ -39,7 +43,7 @@ use crate::setpoint::Setpoint;
 use crate::units::{Command, Position};
 
 use crate::estimator::saturate;
-use integral::Verdict;
+use rest::Verdict;
 
 /// Following error x_set − x in Q15.16 d; saturates at ±32 768 d.
 pub type FollowingError = fixed::types::I16F16;
@@ -57,13 +61,18 @@ pub struct Controller {
     fresh: bool,
     /// Ticks for which the setpoint has been slow; counts no further than it matters.
     slow_ticks: u32,
+    was_calm: bool,
     filter: filter::State,
     friction: friction::State,
+    rest: rest::State,
+    /// What of the last demand goes against friction, and what was learned, Q.30.
+    withheld: i32,
     dead_time: dead_time::State,
     /// What is left of the last jump of the law, Q.30; a jump across the range of a command needs 33 bits.
     transfer: i64,
     /// The next demand is to start from this output.
     start_from: Option<Command>,
+    learning: learning::State,
 }
 
 /// What the controller asks for.
@@ -83,28 +92,53 @@ impl Controller {
             config,
             integral: integral::State::new(),
             slow_ticks: u32::MAX,
+            was_calm: true,
             filter: filter::State::new(),
             friction: friction::State::new(),
+            rest: rest::State::new(),
+            withheld: 0,
             dead_time: dead_time::State::new(),
             previous_error: 0,
             previous_following_error: 0,
             fresh: true,
             transfer: 0,
             start_from: Some(Command::ZERO),
+            learning: learning::State::new(),
         }
     }
 
-    /// Forgets everything; the next demand starts from zero.
-    pub const fn reset(&mut self) {
+    /// Forgets everything but what it learned of the drive; the next demand starts from zero.
+    pub fn reset(&mut self) {
+        let learning = self.learning.clone();
         *self = Self::new(self.config);
+        self.learning = learning;
     }
 
     /// Takes new parameters; the demand goes on from `output` without a step.
-    pub const fn reconfigure(&mut self, config: Config, output: Command) {
+    pub fn reconfigure(&mut self, config: Config, output: Command) {
+        if config.learning != self.config.learning {
+            self.learning = learning::State::new();
+        }
         self.config = config;
         // A new deadband must not look like a change of the error.
         self.previous_error = config.apply_deadband(self.previous_following_error);
         self.start_from = Some(output);
+    }
+
+    /// Takes what a tick shows beside what [`step`](Self::step) acts on: by how much the count changed, and what an observer is
+    /// told of the command of the tick just past, with what came of it.
+    #[inline]
+    pub fn note(&mut self, delta: i32, command: Option<Command>, estimate: &Estimate) {
+        self.rest.note(delta);
+        if self.config.learning.is_on() {
+            self.learning.note(&self.config.learning, command, estimate);
+        }
+    }
+
+    /// By which shares the drive asks for more of the feedforward's terms of v, a and j than they give.
+    #[must_use]
+    pub fn learned(&self) -> [f64; 3] {
+        self.learning.shares()
     }
 
     /// One tick: `position` is the measured position, `estimate` gives velocity and acceleration, and
@@ -140,39 +174,39 @@ impl Controller {
         } else {
             &self.config.moving
         };
-        let mut law = set.weigh(&signals);
-        let resting = is_at_rest(setpoint);
-        let (config, speed) = (&self.config.integral, setpoint.velocity.to_bits());
-        let verdict = self.integral.judge(config, error, resting);
-        let is_lifted = resting && self.config.friction.lifts() && verdict != Verdict::Far;
-        if !is_lifted && verdict != Verdict::Within {
-            let increment = i64::from(error).wrapping_mul(i64::from(set.integral_gain));
+        let (mut law, integral_gain) = (set.weigh(&signals), set.integral_gain);
+        let at_rest = self.at_rest(setpoint, error);
+        if calm != self.was_calm {
+            self.was_calm = calm;
+            if at_rest == Some(Verdict::Within) {
+                self.keep_push(calm, error);
+            }
+        }
+        if self.integrates(at_rest) {
+            let increment = i64::from(error).wrapping_mul(i64::from(integral_gain));
             // Not further into a limit of the output.
             if !(increment > 0 && active.high || increment < 0 && active.low) {
                 self.integral.add(increment);
             }
         }
-        if config.learns() && setpoint.acceleration.to_bits() | setpoint.jerk.to_bits() == 0 {
-            self.integral.learn(config, speed);
-        }
-        law = law.wrapping_add(self.integral.value(config, speed));
+        law = law.wrapping_add(self.integral.value());
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
+        law = law.wrapping_add(self.config.turning.command(setpoint));
+        self.withheld = 0;
         if self.config.friction.is_on() {
-            let level = if is_lifted {
-                let standing = (verdict == Verdict::Near).then_some(error);
-                self.friction.lift(&self.config.friction, standing)
-            } else {
-                self.friction.step(&self.config.friction, setpoint)
-            };
-            law = law.wrapping_add(i64::from(level));
+            law = self.against_friction(law, setpoint, error, at_rest, estimate);
         }
         if self.config.dead_time.is_on() {
-            let friction = self.friction.level().to_bits();
-            law = self
-                .dead_time
-                .step(&self.config.dead_time, law, friction, resting);
+            let (config, lost) = (&self.config.dead_time, self.withheld);
+            law = self.dead_time.step(config, law, lost, at_rest.is_some());
+        }
+        if self.config.learning.is_on() {
+            let (added, changed) = self.learning.add(&self.config.learning, setpoint);
+            law = law.wrapping_add(added);
+            self.integral.give_way(changed);
+            self.withheld = saturate(i64::from(self.withheld).wrapping_add(added));
         }
         let command = self.without_jump(saturate(law));
         Demand {
@@ -181,12 +215,92 @@ impl Controller {
         }
     }
 
-    /// What of the last demand moves nothing: what goes against friction, and what falls into the drive's dead time.
+    /// What of the last demand an observer of the nominal drive is not told: what goes against friction or falls into the
+    /// drive's dead time, and moves nothing, and what the drive was found to need beyond the nominal feedforward.
     #[inline]
     #[must_use]
-    pub const fn friction(&self) -> Command {
+    pub const fn withheld(&self) -> Command {
         let lost = saturate(self.dead_time.lost());
-        Command::from_bits(self.friction.level().to_bits().saturating_add(lost))
+        Command::from_bits(self.withheld.saturating_add(lost))
+    }
+
+    /// Other gains on an `error` that stays as it is: the integral takes over what they give less. What they make of the
+    /// estimates is not kept: held on an axis that still moves it would throw it.
+    #[cold]
+    fn keep_push(&mut self, calm: bool, error: i32) {
+        let Config {
+            moving, calm: slow, ..
+        } = &self.config;
+        let (before, after) = if calm { (moving, slow) } else { (slow, moving) };
+        let signals = [error, 0, 0, 0, 0, 0, 0];
+        let less = before.weigh(&signals).wrapping_sub(after.weigh(&signals));
+        self.integral.take(less);
+    }
+
+    /// What is to become of an `error` at rest; `None` in motion, or if one is about to start.
+    #[inline]
+    fn at_rest(&mut self, setpoint: &Setpoint, error: i32) -> Option<Verdict> {
+        if is_at_rest(setpoint) && !self.config.friction.is_due(setpoint) {
+            if self.rest.enter() && self.config.learning.is_on() {
+                self.integral.rest();
+            }
+            return Some(self.rest.judge(&self.config.rest, error));
+        }
+        if self.rest.leave() {
+            self.integral.start(self.config.held);
+        }
+        None
+    }
+
+    /// The error is integrated.
+    #[inline]
+    const fn integrates(&self, at_rest: Option<Verdict>) -> bool {
+        match at_rest {
+            None | Some(Verdict::Far) => true,
+            Some(Verdict::Near) => !self.config.rest.pushes(),
+            Some(Verdict::Within) => false,
+        }
+    }
+
+    /// `law` with what goes against friction: in motion a level that goes with the setpoint; at rest, where an error stands, a
+    /// push in place of the law, of which static friction takes up what it can.
+    #[inline]
+    fn against_friction(
+        &mut self,
+        law: i64,
+        setpoint: &Setpoint,
+        error: i32,
+        at_rest: Option<Verdict>,
+        estimate: &Estimate,
+    ) -> i64 {
+        match at_rest {
+            Some(verdict @ (Verdict::Within | Verdict::Near)) if self.config.rest.pushes() => {
+                self.pushed(law, error, verdict, estimate.velocity.to_bits())
+            }
+            _ => {
+                let config = &self.config.friction;
+                let level = self.friction.step(config, setpoint, &self.learning);
+                self.withheld = level;
+                law.wrapping_add(i64::from(level))
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn pushed(&mut self, law: i64, error: i32, verdict: Verdict, velocity: i32) -> i64 {
+        self.friction.let_go();
+        let bias = i64::from(self.config.bias);
+        let held = self.learning.scaled(self.config.rest.held());
+        let standing = rest::Standing {
+            error,
+            verdict,
+            law: law.wrapping_sub(bias),
+            held,
+            velocity,
+        };
+        let law = law.wrapping_add(self.rest.push(&self.config.rest, &standing));
+        self.withheld = saturate(law.wrapping_sub(bias)).clamp(held.wrapping_neg(), held);
+        law
     }
 
     /// The feedback part through the filters, and what passes by them.

@@ -41,8 +41,8 @@ parameter_table! {
         transfer_time_s: 0.05, "s", 0.0..=10.0;
         /// Following error within which the integral holds while the setpoint rests
         rest_band_mm: 0.0, "mm", 0.0..=1.0;
-        /// Feed from about which on the integral goes with the feed: it learns an error of the drive's gain; 0 for never
-        integral_by_feed_mm_per_min: 0.0, "mm/min", 0.0..=1e6;
+        /// What the feedforward's terms leave of a command unexplained, 1σ: their gains are learned against it; 0 for never
+        learning_noise: 0.0, "of full command", 0.0..=0.1;
     }
 }
 
@@ -107,7 +107,7 @@ parameter_table! {
         least_command: 5e-5, "of full command", 0.0..=0.1;
         /// Time in which the largest level comes or goes
         rise_s: 0.001, "s", 0.0..=1.0;
-        /// Time in which, at rest with a standing error, the level rises to what it takes to start; 0 for never
+        /// Time in which, at rest with a standing error, a push rises by what it takes to start; 0 for never
         lift_s: 0.0, "s", 0.0..=100.0;
     }
 }
@@ -158,8 +158,9 @@ impl LawParams<'_> {
             taps,
             sections: self.filter.sections(rate)?,
             friction: self.friction.in_ticks(scale, full_velocity, params)?,
-            integral_by_speed: scale.velocity_from_feed(params.integral_by_feed_mm_per_min)?,
+            learning_noise: params.learning_noise,
             rest_band_d: scale.counts_from_mm(params.rest_band_mm),
+            lift_ticks: self.friction.lift_s * rate,
             dead_ticks: self.friction.dead_time_s * rate,
             least_command: self.friction.least_command,
             calm: self.calm(scale, full_velocity, taps.iter().sum())?,
@@ -311,7 +312,7 @@ impl FrictionParams {
             stribeck: velocity(self.stribeck_mm_per_min)?,
             least_speed: velocity(self.least_mm_per_min)?,
             rise_ticks,
-            lift_ticks: self.lift_s * scale.tick_hz(),
+            dead_ticks: self.dead_time_s * scale.tick_hz(),
             lead_ticks: controller.feedforward_lead_s * scale.tick_hz() + rise_ticks / 2.0,
         })
     }

@@ -169,6 +169,11 @@ fn prepared(
     } else {
         PositionFeedback::Count
     };
+    // Learning needs estimates of now.
+    let learning_noise = match estimator {
+        EstimatorConfig::Observer(_) => LEARNING_NOISE,
+        _ => 0.0,
+    };
     let delay_ticks = libm::round(model.delay_s * base.tick_hz).min(MAX_TAPS as f64);
     let inverse = model.place_poles(1.0 / model.natural_period_s)?;
     let excess = |breakaway: f64, kinetic: f64| (breakaway - kinetic).max(0.0);
@@ -186,7 +191,7 @@ fn prepared(
             bias: -model.offset,
             feedforward_lead_s: model.delay_s + 0.5 / base.tick_hz,
             rest_band_mm: scale.mm_from_counts(REST_BAND_D),
-            integral_by_feed_mm_per_min: model.full_command_feed_mm_per_min * BY_FEED,
+            learning_noise,
             ..inverse
         },
         filter: FilterParams {
@@ -209,7 +214,7 @@ fn prepared(
             stribeck_mm_per_min: model.stribeck_mm_per_min.max(0.02),
             dead_time_s: model.dead_time_s,
             least_command: model.resolution / 2.0,
-            lift_s: model.natural_period_s,
+            lift_s: model.natural_period_s / 1.5,
             ..base.friction
         },
         calm: CalmParams::default(),
@@ -217,8 +222,8 @@ fn prepared(
     })
 }
 
-/// Feed from about which on the integral goes with the feed, of full command: offset and friction are what counts below.
-const BY_FEED: f64 = 0.1;
+/// What friction, ripple and steps of command leave of a command unexplained, 1σ, of full command.
+const LEARNING_NOISE: f64 = 1e-3;
 
 /// What is left of the disturbance that an observer has to expect where friction and offset are fed forward: of 0.1 to 3 this
 /// crept best on the 16K20F3.

@@ -192,11 +192,13 @@ pub fn trial(
         let Ok(profile) = Profile::plan(distance, &config.limits) else {
             continue;
         };
-        let start = axis.outputs().tick.wrapping_add(1);
+        let notice = axis.notice_ticks();
+        let start = axis.outputs().tick.wrapping_add(notice);
         if axis.queue(&profile, start).is_err() {
             continue;
         }
-        run(&mut axis, profile.ticks(), &mut |_, error, _| {
+        let moving = profile.ticks().saturating_add(notice).saturating_sub(1);
+        run(&mut axis, moving, &mut |_, error, _| {
             result.peak_d = result.peak_d.max(error.abs());
         });
         let (settled, quiet, all) = (ticks(0.1), ticks(3.0), ticks(4.0));

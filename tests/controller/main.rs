@@ -7,9 +7,12 @@ mod continuity;
 mod integral;
 mod law;
 mod law_oracle;
+mod learning;
 mod links;
 mod output;
 mod parts;
+mod rest;
 #[path = "../support/seeded.rs"]
 mod seeded;
 mod signals;
+mod turning;

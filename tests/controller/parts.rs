@@ -3,10 +3,11 @@
 use leadscrew::controller::biquad::{Section, State};
 use leadscrew::controller::config::{Config, Extras, Gains};
 use leadscrew::controller::friction::{Config as FrictionConfig, Friction, State as FrictionState};
+use leadscrew::controller::learning::State as Learned;
 use leadscrew::controller::{Controller, dead_time};
 use leadscrew::estimator::{Delay, Lags};
-use leadscrew::setpoint::Setpoint;
-use leadscrew::units::{Command, Velocity};
+use leadscrew::setpoint::{Setpoint, Turn};
+use leadscrew::units::{Acceleration, Command, Jerk, Velocity};
 
 use crate::signals::{LSB, demanded, standing};
 
@@ -79,7 +80,7 @@ fn friction_follows_the_stribeck_curve_by_direction_and_comes_at_its_rate() {
         least_speed: 0.001,
         rise_ticks: 10.0,
         lead_ticks: 2.5,
-        lift_ticks: 0.0,
+        dead_ticks: 0.0,
     };
     let config = FrictionConfig::new(&friction).unwrap();
     for (speed, level) in [
@@ -93,7 +94,7 @@ fn friction_follows_the_stribeck_curve_by_direction_and_comes_at_its_rate() {
         let mut state = FrictionState::new();
         let mut before = 0;
         for _ in 0..100 {
-            let now = state.step(&config, &moving(speed));
+            let now = state.step(&config, &moving(speed), &Learned::new());
             assert!((now - before).abs() <= (0.005 * f64::from(FULL)) as i32 + 1);
             before = now;
         }
@@ -166,34 +167,64 @@ fn filters_neither_kick_at_a_change_nor_leave_an_offset() {
 }
 
 #[test]
-fn at_rest_the_level_rises_until_the_axis_moves_and_begins_anew() {
+fn before_an_announced_start_half_of_the_kinetic_level_turns_the_command_in_time() {
+    let friction = Friction {
+        kinetic: [0.01, 0.02],
+        breakaway: [0.02, 0.05],
+        stribeck: 1.0,
+        least_speed: 0.001,
+        rise_ticks: 1.0,
+        lead_ticks: 3.0,
+        dead_ticks: 5.0,
+    };
+    let config = FrictionConfig::new(&friction).unwrap();
+    assert_eq!(config.notice(), 8);
+    for (jerk, level) in [(0.1, 0.005), (-0.1, -0.01)] {
+        let before = |ticks| Setpoint {
+            turn: Turn {
+                ticks,
+                jerk: Jerk::from_num(jerk),
+            },
+            ..Setpoint::default()
+        };
+        let level_at = |ticks| {
+            let mut state = FrictionState::new();
+            let level = state.step(&config, &before(ticks), &Learned::new());
+            f64::from(level) / f64::from(FULL)
+        };
+        assert_eq!(level_at(9), 0.0);
+        assert!((level_at(8) - level).abs() < 1e-6, "{}", level_at(8));
+        // 2.5 ticks into the motion the level is that of its speed, near the static one.
+        assert!(level_at(0).abs() > 3.0 * level.abs(), "{}", level_at(0));
+    }
+}
+
+#[test]
+fn at_the_end_of_a_motion_the_level_goes_with_the_speed_and_not_beyond() {
     let friction = Friction {
         kinetic: [0.01; 2],
         breakaway: [0.02; 2],
         stribeck: 1.0,
         least_speed: 0.001,
         rise_ticks: 1.0,
-        lead_ticks: 1.0,
-        lift_ticks: 10.0,
+        lead_ticks: 3.0,
+        dead_ticks: 0.0,
     };
     let config = FrictionConfig::new(&friction).unwrap();
-    for side in [1, -1] {
-        let mut state = FrictionState::new();
-        let error = side * (3 << 16);
-        state.lift(&config, Some(error));
-        let mut level = 0;
-        for _ in 0..10 {
-            level = state.lift(&config, Some(error));
-        }
-        let reached = f64::from(side * level) / f64::from(1 << 30);
-        assert!((reached - 0.02).abs() < 1e-6, "{reached}");
-        // It does not grow for ever.
-        for _ in 0..100 {
-            level = state.lift(&config, Some(error));
-        }
-        let most = f64::from(side * level) / f64::from(1 << 30);
-        assert!((most - 0.032).abs() < 1e-6, "{most}");
-        assert_eq!(state.lift(&config, Some(error - side * (1 << 16))), 0);
-        assert_eq!(state.lift(&config, None), 0);
+    // The last ticks of a stop with the jerk 0.01: v = j·n²/2, a = −j·n.
+    for left in 0..4_u32 {
+        let n = f64::from(left);
+        let setpoint = Setpoint {
+            velocity: Velocity::from_num(0.005 * n * n),
+            acceleration: Acceleration::from_num(-0.01 * n),
+            jerk: Jerk::from_num(0.01),
+            turn: Turn {
+                ticks: left,
+                jerk: Jerk::ZERO,
+            },
+            ..Setpoint::default()
+        };
+        let level = FrictionState::new().step(&config, &setpoint, &Learned::new());
+        assert_eq!(level, 0, "{left} ticks before the end");
     }
 }

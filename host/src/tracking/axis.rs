@@ -104,11 +104,12 @@ impl<'m> Rig<'m> {
         )?;
         let distance = Position::saturating_from_num(self.scale.counts_from_mm(way));
         let profile = Profile::plan(distance, &limits).map_err(ScenarioError::Plan)?;
-        let start = self.outputs.tick.wrapping_add(1);
+        let notice = self.axis.notice_ticks();
+        let start = self.outputs.tick.wrapping_add(notice);
         self.axis
             .queue(&profile, start)
             .map_err(ScenarioError::Queue)?;
-        self.ticks(profile.ticks())
+        self.ticks(notice + profile.ticks() - 1)
     }
 
     fn ticks(&mut self, ticks: u32) -> Result<(), TrackingError> {

@@ -221,10 +221,14 @@ impl<'m> Rig<'m> {
         )?;
         let distance = Position::saturating_from_num(self.scale.counts_from_mm(way));
         let profile = Profile::plan(distance, &limits).map_err(ScenarioError::Plan)?;
-        let start = self.outputs.tick.wrapping_add(1);
+        let notice = self.axis.notice_ticks();
+        let start = self.outputs.tick.wrapping_add(notice);
         self.axis
             .queue(&profile, start)
             .map_err(ScenarioError::Queue)?;
+        for _ in 1..notice {
+            self.tick();
+        }
         for _ in 0..profile.ticks() {
             let (error, _) = self.tick();
             take(self, error);

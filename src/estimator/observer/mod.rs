@@ -46,7 +46,8 @@ pub use linear::Linear;
 pub use params::ObserverParams;
 
 use self::motion::Motion;
-use self::supervisor::{Line, Supervisor};
+pub(crate) use self::supervisor::Line;
+use self::supervisor::Supervisor;
 use super::{Estimate, Evidence};
 use crate::units::{Command, Velocity};
 
