@@ -1,6 +1,7 @@
 //! The person at the panel: plans what is asked of the axis, outside the tick.
 
 use leadscrew::axis::{Axis, Request};
+use leadscrew::identification::program::{Bounds, Program, Segment, command};
 use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::planner::{Planner, Timed};
 use leadscrew::setpoint::sources::Source;
@@ -10,7 +11,7 @@ use leadscrew::supervisor::State;
 use leadscrew::telemetry::Record;
 use leadscrew::units::{AxisScale, Position, Velocity, checked};
 
-use super::action::Ask;
+use super::action::{Ask, Pulse};
 use super::error::ScenarioError;
 
 /// Farthest position and longest move, mm.
@@ -49,7 +50,8 @@ impl Seen {
             is_planned: in_control
                 && !axis.homing().is_active()
                 && axis.source() == Source::Trajectory
-                && axis.thread_phase() == ThreadPhase::Idle,
+                && axis.thread_phase() == ThreadPhase::Idle
+                && axis.experiment().is_none(),
         }
     }
 }
@@ -120,6 +122,11 @@ impl Operator {
             Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
             Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
             Ask::ArmThread(order) => return Ok(Order::Axis(Request::ArmThread(order))),
+            Ask::Experiment(pulse) => {
+                let program = self.program(&pulse)?;
+                return Ok(Order::Axis(Request::StartExperiment(program)));
+            }
+            Ask::EndExperiment => return Ok(Order::Axis(Request::ReleaseExperiment)),
             Ask::SetTravel { low_mm, high_mm } => {
                 let low = self.raw(seen, "low_mm", low_mm)?;
                 let high = self.raw(seen, "high_mm", high_mm)?;
@@ -177,6 +184,25 @@ impl Operator {
     fn distance(&self, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
         let mm = checked(name, mm, -MAX_TRAVEL_MM, MAX_TRAVEL_MM)?;
         Ok(Position::saturating_from_num(self.scale.counts_from_mm(mm)))
+    }
+
+    /// The program of an experiment, no faster than the axis may go.
+    fn program(&self, pulse: &Pulse) -> Result<Program, ScenarioError> {
+        let ticks = |seconds: f64| (seconds * self.scale.tick_hz()) as u32;
+        let (length, rest) = (ticks(pulse.length_s), ticks(pulse.rest_s));
+        let segments = [Segment::level(pulse.level, length), Segment::rest(rest)];
+        let bounds = Bounds {
+            window_d: self.scale.counts_from_mm(pulse.window_mm) as u32,
+            speed_d_per_tick: libm::ceil(self.scale.velocity_from_feed(self.fastest)?) as u32,
+            ticks: length.saturating_add(rest).saturating_add(1),
+            command: command(pulse.level.max(-pulse.level)),
+        };
+        let program = Program::new(&segments, bounds);
+        Ok(if pulse.is_closed {
+            program.closed()
+        } else {
+            program
+        })
     }
 
     /// A feed; 0 stands for the largest.

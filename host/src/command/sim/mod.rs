@@ -119,16 +119,15 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             "max_acceleration_d_per_tick2" | "max_jerk_d_per_tick3" => {
                 format!("--tick-hz {}", args.tick_hz)
             }
-            name if name.contains("gain") || name.contains("feedforward") => {
-                return untunable(args, drive, range);
-            }
             _ => return error.into(),
         },
-        ScenarioError::Param(ParamError::TravelReversed { .. }) => return error.into(),
+        ScenarioError::Param(ParamError::Law(range)) => return untunable(args, drive, range),
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
-        ScenarioError::Planner(_) | ScenarioError::Travel(_) | ScenarioError::Refused(_) => {
-            return error.into();
-        }
+        ScenarioError::Param(ParamError::TravelReversed { .. })
+        | ScenarioError::Planner(_)
+        | ScenarioError::Travel(_)
+        | ScenarioError::Refused(_)
+        | ScenarioError::Autotune(_) => return error.into(),
         ScenarioError::NoSuchEstimator => format!("--estimator {}", args.estimator),
     };
     CommandError::Usage(format!("{blamed}: {error}"))
