@@ -15,10 +15,6 @@ use crate::supervisor::ClearError;
 
 /// A request.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a queue of them is a static, and there is no heap"
-)]
 pub enum Request {
     /// [`Axis::queue`].
     Queue {

@@ -5,7 +5,7 @@ use leadscrew::identification::program::{Bounds, Program, Segment, command};
 use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::planner::{Planner, Timed};
 use leadscrew::setpoint::sources::Source;
-use leadscrew::setpoint::thread::ThreadPhase;
+use leadscrew::setpoint::thread::{ThreadOrder, ThreadPhase};
 use leadscrew::setpoint::travel::TravelLimits;
 use leadscrew::supervisor::State;
 use leadscrew::telemetry::Record;
@@ -121,7 +121,9 @@ impl Operator {
             Ask::Home => return Ok(Order::Axis(Request::Home)),
             Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
             Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
-            Ask::ArmThread(order) => return Ok(Order::Axis(Request::ArmThread(order))),
+            Ask::ArmThread(order) => {
+                return Ok(Order::Axis(Request::ArmThread(self.placed(&order, seen))));
+            }
             Ask::Experiment(pulse) => {
                 let program = self.program(&pulse)?;
                 return Ok(Order::Axis(Request::StartExperiment(program)));
@@ -172,6 +174,21 @@ impl Operator {
     pub fn withdraw(&mut self, order: &Order) {
         if matches!(order, Order::Axis(Request::Queue { .. })) {
             self.planner.withdraw();
+        }
+    }
+
+    /// A pass whose positions are from the origin of the axis: that of homing, or raw position 0.
+    fn placed(&self, order: &ThreadOrder, seen: &Seen) -> ThreadOrder {
+        let start = match seen.origin {
+            Some(_) => Position::ZERO,
+            None => self.start.unwrap_or_default(),
+        };
+        let from_raw = |mm| mm + self.scale.mm_from_counts(start.to_num());
+        ThreadOrder {
+            start_mm: from_raw(order.start_mm),
+            from_mm: from_raw(order.from_mm),
+            to_mm: from_raw(order.to_mm),
+            ..*order
         }
     }
 
