@@ -100,6 +100,8 @@ parameter_table! {
 pub enum ParamError {
     /// A parameter, or what it comes to in the units of the tick, is out of range.
     Range(RangeError),
+    /// A parameter of the control law, or what its weights come to in the units of the tick, is out of range.
+    Law(RangeError),
     /// The maximum feed leaves the drive no room for control.
     FeedTooHigh {
         /// The feed asked for, mm/min.
@@ -125,7 +127,7 @@ impl From<RangeError> for ParamError {
 impl fmt::Display for ParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Range(error) => error.fmt(f),
+            Self::Range(error) | Self::Law(error) => error.fmt(f),
             Self::FeedTooHigh {
                 max_feed_mm_per_min,
                 full_command_feed_mm_per_min,
@@ -231,7 +233,8 @@ impl AxisParams {
                 friction: &self.friction,
                 calm: &self.calm,
             }
-            .quantise(scale, full_velocity, estimators.delay())?,
+            .quantise(scale, full_velocity, estimators.delay())
+            .map_err(ParamError::Law)?,
             output: self.output.quantise(scale)?,
             sources: self.sources.quantise(scale, limits, edges)?,
             supervisor: self.supervisor.quantise(

@@ -1,10 +1,14 @@
 //! The command line.
 
+mod shared;
+
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use leadscrew::estimator::EstimatorConfig;
+
+pub use self::shared::{BenchArgs, ChannelArgs, OutputArgs, SimulatedArgs};
 
 use crate::command::tune_filter::TuneFilterArgs;
 
@@ -85,49 +89,6 @@ pub struct AutotuneArgs {
     pub json: bool,
 }
 
-/// A simulated machine that is to be identified.
-#[derive(Debug, Args)]
-pub struct BenchArgs {
-    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
-    pub machine: String,
-    /// Control rate, Hz (100 to 40000)
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1000.0,
-        allow_negative_numbers = true
-    )]
-    pub tick_hz: f64,
-    /// Travel within which all experiments stay, half to either side, mm (0.1 to 1000)
-    #[arg(
-        long,
-        value_name = "MM",
-        default_value_t = 20.0,
-        allow_negative_numbers = true
-    )]
-    pub window_mm: f64,
-    /// Feed at full command as it is thought to be before it is measured, mm/min
-    #[arg(
-        long,
-        value_name = "MM_PER_MIN",
-        default_value_t = 9600.0,
-        allow_negative_numbers = true
-    )]
-    pub nominal_feed: f64,
-    /// Exchange the wires of the command, to see the wrong polarity found
-    #[arg(long)]
-    pub reverse_drive: bool,
-    /// Seed of everything random
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub seed: u64,
-}
-
 /// Arguments of `accuracy`.
 #[derive(Debug, Args)]
 pub struct AccuracyArgs {
@@ -147,26 +108,12 @@ pub struct TrackingArgs {
     pub tune_linuxcnc: bool,
 }
 
-/// Where results go.
-#[derive(Debug, Args)]
-pub struct OutputArgs {
-    /// Print the report as JSON, alone, on standard output
-    #[arg(long)]
-    pub json: bool,
-    /// Write one row a tick to FILE
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
-    /// Draw velocity and acceleration to FILE.svg or FILE.png
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-}
-
 /// Arguments of `sim`.
 #[derive(Debug, Args)]
 pub struct SimArgs {
-    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
-    pub machine: String,
+    /// The machine
+    #[command(flatten)]
+    pub simulated: SimulatedArgs,
     /// Run what FILE says instead of a move there and back, and fail unless all that it expects comes true
     #[arg(
         long,
@@ -190,25 +137,9 @@ pub struct SimArgs {
         allow_negative_numbers = true
     )]
     pub feed: f64,
-    /// Control rate, Hz (100 to 40000)
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1000.0,
-        allow_negative_numbers = true
-    )]
-    pub tick_hz: f64,
     /// Estimator in the loop, in the CSV and in the plot
     #[arg(long, value_name = "NAME", default_value = "exponential", value_parser = estimator_names())]
     pub estimator: String,
-    /// Seed of everything random
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        allow_negative_numbers = true
-    )]
-    pub seed: u64,
     /// Print the machine as TOML, with units and comments, and stop
     #[arg(long, conflicts_with_all = ["json", "csv", "plot"])]
     pub dump_machine: bool,
@@ -230,18 +161,9 @@ pub struct ReplayArgs {
         allow_negative_numbers = true
     )]
     pub tick_hz: f64,
-    /// Channel A: its exact name, else its index from 0 [default: the first one-bit signal]
-    #[arg(long, value_name = "CH")]
-    pub a: Option<String>,
-    /// Channel B [default: the second one-bit signal]
-    #[arg(long, value_name = "CH")]
-    pub b: Option<String>,
-    /// Channel Z (index) [default: none]
-    #[arg(long, value_name = "CH")]
-    pub z: Option<String>,
-    /// Sampling rate of a sigrok CSV that does not state it, Hz
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub samplerate: Option<u64>,
+    /// Its channels
+    #[command(flatten)]
+    pub channels: ChannelArgs,
     /// Only this estimator [default: all in the report, exponential in the CSV]
     #[arg(long, value_name = "NAME", value_parser = estimator_names())]
     pub estimator: Option<String>,
@@ -297,18 +219,9 @@ pub struct CalibrateEncoderArgs {
     /// How much the map is to know
     #[arg(long, value_name = "FORM", value_enum, default_value = "full")]
     pub form: MapForm,
-    /// Channel A: its exact name, else its index from 0 [default: the first one-bit signal]
-    #[arg(long, value_name = "CH")]
-    pub a: Option<String>,
-    /// Channel B [default: the second one-bit signal]
-    #[arg(long, value_name = "CH")]
-    pub b: Option<String>,
-    /// Channel Z (index) [default: none, for which only phases can be learned]
-    #[arg(long, value_name = "CH")]
-    pub z: Option<String>,
-    /// Sampling rate of a sigrok CSV that does not state it, Hz
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub samplerate: Option<u64>,
+    /// Their channels
+    #[command(flatten)]
+    pub channels: ChannelArgs,
     /// Control rate at which the core samples the captures, Hz (100 to 40000)
     #[arg(
         long,

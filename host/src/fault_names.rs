@@ -1,32 +1,55 @@
 //! Faults and states by the names that files and reports give them.
 
+use std::str::from_utf8;
+
 use leadscrew::supervisor::{Fault, State};
 
-/// All faults, by number from 1, with their names.
-pub const FAULTS: [(Fault, &str); 22] = [
-    (Fault::FollowingError, "following-error"),
-    (Fault::MotionAgainstCommand, "motion-against-command"),
-    (Fault::MotionAtStandstill, "motion-at-standstill"),
-    (Fault::MotionWhileDisabled, "motion-while-disabled"),
-    (Fault::SignalLoss, "signal-loss"),
-    (Fault::IllegalTransitions, "illegal-transitions"),
-    (Fault::IndexInconsistent, "index-inconsistent"),
-    (Fault::IndexNotFound, "index-not-found"),
-    (Fault::EncoderLoss, "encoder-loss"),
-    (Fault::DriveFault, "drive-fault"),
-    (Fault::DriveNotReady, "drive-not-ready"),
-    (Fault::OutputMismatch, "output-mismatch"),
-    (Fault::HardLimit, "hard-limit"),
-    (Fault::SoftLimit, "soft-limit"),
-    (Fault::Overspeed, "overspeed"),
-    (Fault::OutputSaturated, "output-saturated"),
-    (Fault::LateTick, "late-tick"),
-    (Fault::SetpointLost, "setpoint-lost"),
-    (Fault::StoreCorrupt, "store-corrupt"),
-    (Fault::EmergencyStop, "emergency-stop"),
-    (Fault::HomingFailed, "homing-failed"),
-    (Fault::SpindleLost, "spindle-lost"),
-];
+/// How many faults there are.
+pub const FAULT_COUNT: usize = Fault::ALL.len();
+/// Longest name, hyphens included.
+const LONGEST: usize = 32;
+
+/// Names of all faults, in the order of [`Fault::ALL`]: those of the code, words parted by hyphens.
+pub const FAULT_NAMES: [&str; FAULT_COUNT] = {
+    let mut names = [""; FAULT_COUNT];
+    let mut index = 0;
+    while index < FAULT_COUNT {
+        let (bytes, length) = &SPELT[index];
+        let (name, _) = bytes.split_at(*length);
+        names[index] = match from_utf8(name) {
+            Ok(name) => name,
+            Err(_) => panic!("names are ASCII"),
+        };
+        index += 1;
+    }
+    names
+};
+
+static SPELT: [([u8; LONGEST], usize); FAULT_COUNT] = {
+    let mut spelt = [([0; LONGEST], 0); FAULT_COUNT];
+    let mut index = 0;
+    while index < FAULT_COUNT {
+        spelt[index] = kebab(Fault::ALL[index].name());
+        index += 1;
+    }
+    spelt
+};
+
+/// `FollowingError` as `following-error`, and its length.
+const fn kebab(name: &str) -> ([u8; LONGEST], usize) {
+    let name = name.as_bytes();
+    let (mut bytes, mut length, mut index) = ([0; LONGEST], 0, 0);
+    while index < name.len() {
+        if name[index].is_ascii_uppercase() && index > 0 {
+            bytes[length] = b'-';
+            length += 1;
+        }
+        bytes[length] = name[index].to_ascii_lowercase();
+        length += 1;
+        index += 1;
+    }
+    (bytes, length)
+}
 
 /// All states with their names.
 pub const STATES: [(State, &str); 6] = [
@@ -41,8 +64,8 @@ pub const STATES: [(State, &str); 6] = [
 /// The name of a fault.
 #[must_use]
 pub fn fault_name(fault: Fault) -> &'static str {
-    let found = FAULTS.iter().find(|(known, _)| *known == fault);
-    found.map_or("unknown", |(_, name)| name)
+    let place = Fault::ALL.iter().position(|known| *known == fault);
+    place.map_or("unknown", |place| FAULT_NAMES[place])
 }
 
 /// The name of a state.
@@ -50,4 +73,20 @@ pub fn fault_name(fault: Fault) -> &'static str {
 pub fn state_name(state: State) -> &'static str {
     let found = STATES.iter().find(|(known, _)| *known == state);
     found.map_or("unknown", |(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_code_in_words() {
+        assert_eq!(fault_name(Fault::FollowingError), "following-error");
+        assert_eq!(fault_name(Fault::EmergencyStop), "emergency-stop");
+        assert_eq!(FAULT_NAMES.len(), Fault::ALL.len());
+        for name in FAULT_NAMES {
+            let is_plain = |letter: char| letter.is_ascii_lowercase() || letter == '-';
+            assert!(name.chars().all(is_plain), "{name}");
+        }
+    }
 }

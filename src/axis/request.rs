@@ -3,7 +3,9 @@
 use core::fmt;
 
 use super::Axis;
+use super::experiment::StartError;
 use crate::homing::HomeRefused;
+use crate::identification::program::Program;
 use crate::setpoint::plan::Plan;
 use crate::setpoint::sources::{GearError, SelectError, Source};
 use crate::setpoint::thread::{ThreadOrder, ThreadRefusal};
@@ -13,10 +15,6 @@ use crate::supervisor::ClearError;
 
 /// A request.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a queue of them is a static, and there is no heap"
-)]
 pub enum Request {
     /// [`Axis::queue`].
     Queue {
@@ -35,6 +33,10 @@ pub enum Request {
     Engage(bool),
     /// [`Axis::arm_thread`].
     ArmThread(ThreadOrder),
+    /// [`Axis::start_experiment`].
+    StartExperiment(Program),
+    /// [`Axis::release_experiment`].
+    ReleaseExperiment,
     /// [`Axis::clear_fault`].
     ClearFault,
     /// Forgets the warnings.
@@ -54,6 +56,8 @@ pub enum Refused {
     Gear(GearError),
     /// A thread.
     Thread(ThreadRefusal),
+    /// An experiment.
+    Experiment(StartError),
     /// Clearing.
     Clear(ClearError),
 }
@@ -66,6 +70,7 @@ impl fmt::Display for Refused {
             Self::Select(error) => error.fmt(f),
             Self::Gear(error) => error.fmt(f),
             Self::Thread(error) => error.fmt(f),
+            Self::Experiment(error) => error.fmt(f),
             Self::Clear(error) => error.fmt(f),
         }
     }
@@ -90,6 +95,13 @@ impl Axis<'_> {
             Request::Engage(engaged) => self.engage_gear(*engaged).map_err(Refused::Gear),
             Request::ArmThread(order) => {
                 self.arm_thread(order).map(|_| ()).map_err(Refused::Thread)
+            }
+            Request::StartExperiment(program) => {
+                self.start_experiment(program).map_err(Refused::Experiment)
+            }
+            Request::ReleaseExperiment => {
+                self.release_experiment();
+                Ok(())
             }
             Request::ClearFault => self.clear_fault().map_err(Refused::Clear),
             Request::ClearWarnings => {

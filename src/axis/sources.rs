@@ -27,7 +27,8 @@ impl Axis<'_> {
         self.sources.selected()
     }
 
-    /// Engages the gear while the master turns or stands, or disengages it.
+    /// Engages the gear while the master turns or stands, or disengages it. It locks at the phase that comes of the moment:
+    /// see [`gearing`](crate::setpoint::gearing).
     ///
     /// # Errors
     /// [`GearError`]; the gear stays as it is.

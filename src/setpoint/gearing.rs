@@ -4,6 +4,11 @@
 //! master stands between two counts comes from its estimate, as do velocity and acceleration, so that the axis is told
 //! where it has to be now, not where it had to be.
 //!
+//! **Phase.** The gear locks at the phase that comes of the moment of engaging: x₀ is not chosen. From then on it is kept
+//! exactly, but engaged anew the gear locks at another one. A phase that is given beforehand would need a run-up whose
+//! end does not depend on what the master's speed does in it, that is one over the master's angle; then a master that
+//! stands could not be engaged. Where the phase counts, as against an index, [a thread](super::thread) has such a run-up.
+//!
 //! The gear is engaged while the master turns: over N ticks, planned from the master's speed and the limits of the axis,
 //! a [weight](super::run_up) of the master's motion goes from 0 to 1, and x₀ is what comes of it. Disengaging is the same
 //! from 1 to 0. A master that asks for more than the largest velocity, or for more than 1¼ of the largest acceleration, is not

@@ -15,7 +15,7 @@ use super::master::Master;
 use super::plan::Plan;
 use super::profile::Limits;
 use super::step_dir::StepDir;
-use super::thread::{Thread, ThreadFigures, ThreadOrder, ThreadRefusal};
+use super::thread::{Standing, Thread, ThreadFigures, ThreadOrder, ThreadRefusal};
 use super::trajectory::{QueueError, Trajectory};
 use super::travel::TravelLimits;
 use crate::hal::{Capture, Reference};
@@ -221,11 +221,12 @@ impl Sources {
         if self.selected != Source::Trajectory {
             return Err(ThreadRefusal::OtherSource);
         }
-        let position = self.last.position;
-        let (plan, figures) = self
-            .config
-            .thread
-            .plan(order, &self.master, position, origin)?;
+        let standing = Standing {
+            position: self.last.position,
+            origin,
+            travel: self.travel,
+        };
+        let (plan, figures) = self.config.thread.plan(order, &self.master, &standing)?;
         self.trajectory
             .queue(plan.first_leg(), now.wrapping_add(1), now)
             .map_err(|_| ThreadRefusal::Moving)?;

@@ -161,7 +161,7 @@ faults! {
     /// The drive is commanded and the encoder stands.
     EncoderLoss = 9, ZeroVolts {
         condition: "|command| above `encoder_loss_level` for `encoder_loss_time_s` and for a way of `encoder_loss_mm` at full-command speed × command, while the encoder moves less than `encoder_loss_counts`.",
-        bound: "50 ms, and 0.5 mm of commanded way, whichever is later; in fast motion the following error is earlier",
+        bound: "with the command above its level all the while: the 51st tick of it from 6.3 % of full command on, the 63rd at 5 %; the commanded way is then 0.5 mm, and 51 ticks of it above 600 mm/min: 8.2 mm at full command. In fast motion the following error is earlier",
         figure: "commanded way, d",
         cause: "The encoder's coupling is broken, the encoder dead, the axis jammed, the drive without power.",
         remedy: "Turn the screw by hand and watch the count; check coupling, cable and drive; then home again.",
@@ -193,7 +193,7 @@ faults! {
     /// A limit switch was reached.
     HardLimit = 13, ZeroVolts {
         condition: "On a limit switch with motion toward it: a setpoint that moves, or more than `still_feed_mm_per_min` measured.",
-        bound: "one tick; the way to stop is the drive's: 5.4 mm from 9 000 mm/min at 2.1 m/s²",
+        bound: "the first tick that sees the switch closed: 1 ms and 0.15 mm beyond it at 9 000 mm/min. The way to stop is the drive's: 5.4 mm from there at 2.1 m/s², and its lag",
         figure: "velocity toward the switch, d/tick",
         cause: "Soft limits wrong or off, a lost origin, a wire of the switch broken.",
         remedy: "Clear, enable and move out of the switch, which stays possible; home again; check the soft limits.",

@@ -22,7 +22,7 @@ fn defaults() -> AxisParams {
 #[track_caller]
 fn range_error(params: &AxisParams) -> RangeError {
     match params.validate() {
-        Err(ParamError::Range(error)) => error,
+        Err(ParamError::Range(error) | ParamError::Law(error)) => error,
         other => panic!("{other:?} is not an error of range"),
     }
 }

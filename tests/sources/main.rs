@@ -11,3 +11,4 @@ mod seeded;
 mod step_dir;
 mod thread;
 mod thread_refusals;
+mod thread_travel;

@@ -87,6 +87,25 @@ pub enum Ask {
     Engage(bool),
     /// Cuts a pass of a thread.
     ArmThread(ThreadOrder),
+    /// An experiment of identification.
+    Experiment(Pulse),
+    /// Ends an experiment, and gives the axis back to its loop.
+    EndExperiment,
+}
+
+/// A step of the command, and zero command after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse {
+    /// Command, as a share of full command.
+    pub level: f64,
+    /// For how long, s.
+    pub length_s: f64,
+    /// At zero command for so long after it, s.
+    pub rest_s: f64,
+    /// The experiment ends early where the axis leaves so much to either side of where it began, mm.
+    pub window_mm: f64,
+    /// The command is added to the loop's; else it takes its place.
+    pub is_closed: bool,
 }
 
 /// What comes from outside the axis.

@@ -1,6 +1,7 @@
 //! What a run is made of, as a file or a constant states it.
 
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::paths::{Choice, Paths};
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{AxisParams, MAX_FEED_SHARE};
 use leadscrew::units::{RangeError, checked};
@@ -9,7 +10,7 @@ use super::action::Timed;
 use super::error::ScenarioError;
 use super::plant::Plant;
 use super::sections::{Set, visit_axis, visit_plant};
-use super::tuning::{BANDWIDTH_RAD_PER_S, tuned_axis, tuned_estimator};
+use super::tuning::{BANDWIDTH_RAD_PER_S, autotuned_axis, tuned_axis, tuned_estimator};
 use crate::machine::MachineParams;
 
 /// Longest run, s.
@@ -59,6 +60,29 @@ pub struct Setting {
     pub value: f64,
 }
 
+/// How the loop is tuned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tuning {
+    /// The poles are placed on the drive's nominal period and damping; offset, friction and delay are not known to it.
+    PlacePoles {
+        /// Where, rad/s.
+        bandwidth_rad_per_s: f64,
+    },
+    /// By the product's own tuning, which knows the drive as a perfect identification would find it.
+    Autotune,
+}
+
+/// What a laser showed at a place of the screw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScrewReading {
+    /// The place, from the origin, mm.
+    pub position_mm: f64,
+    /// Carriage less place, having come there towards larger positions, mm.
+    pub forward_mm: f64,
+    /// The same towards smaller ones, mm.
+    pub backward_mm: f64,
+}
+
 /// A run: a machine, an axis, and what happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenario<'s> {
@@ -72,8 +96,12 @@ pub struct Scenario<'s> {
     pub tick_hz: f64,
     /// Name of the estimator in the loop.
     pub estimator: &'static str,
-    /// Where the poles of the loop are placed, rad/s.
-    pub bandwidth_rad_per_s: f64,
+    /// Name of a second estimator, whose estimates are shown; `None` if that of the loop is.
+    pub display: Option<&'static str>,
+    /// How the loop is tuned.
+    pub tuning: Tuning,
+    /// Table of the screw, for the host to set; empty for none.
+    pub screw: &'s [ScrewReading],
     /// A learned map of the encoder is in use; the estimator counts on it.
     pub mapped: bool,
     /// Seed of everything random.
@@ -92,7 +120,11 @@ impl Scenario<'_> {
         axis: &[],
         tick_hz: 1000.0,
         estimator: "exponential",
-        bandwidth_rad_per_s: BANDWIDTH_RAD_PER_S,
+        display: None,
+        tuning: Tuning::PlacePoles {
+            bandwidth_rad_per_s: BANDWIDTH_RAD_PER_S,
+        },
+        screw: &[],
         mapped: false,
         seed: 1,
         duration_s: 1.0,
@@ -114,21 +146,46 @@ impl Scenario<'_> {
     /// # Errors
     /// A parameter out of range.
     pub fn axis_params(&self, machine: &MachineParams) -> Result<AxisParams, ScenarioError> {
-        let named = EstimatorConfig::by_name(self.estimator)?;
-        let estimator = named.ok_or(ScenarioError::NoSuchEstimator)?;
-        let estimator = tuned_estimator(machine, self.tick_hz, estimator, self.mapped)?;
+        let estimator = self.estimator_on(machine, self.estimator)?;
         let fastest = MAX_FEED_SHARE * machine.drive.full_command_feed_mm_per_min;
-        let mut axis = tuned_axis(
-            machine,
-            self.tick_hz,
-            REFERENCE_FEED.min(fastest),
-            self.bandwidth_rad_per_s,
-            estimator,
-        )?;
+        let feed = REFERENCE_FEED.min(fastest);
+        let mut axis = match self.tuning {
+            Tuning::PlacePoles {
+                bandwidth_rad_per_s,
+            } => tuned_axis(machine, self.tick_hz, feed, bandwidth_rad_per_s, estimator)?,
+            Tuning::Autotune => autotuned_axis(machine, self.tick_hz, feed, estimator, self.mapped)
+                .map_err(ScenarioError::Autotune)?,
+        };
+        if let Some(display) = self.display {
+            axis.second_estimator = Some(self.estimator_on(machine, display)?);
+            axis.paths = Paths {
+                display: Choice::Second,
+                ..axis.paths
+            };
+        }
+        if !self.screw.is_empty() {
+            axis.compensation.screw_table = 1.0;
+        }
         for setting in self.axis {
             visit_axis(&mut axis, setting.section, Set(setting));
         }
         Ok(axis)
+    }
+
+    /// The estimator of that name for `machine`.
+    fn estimator_on(
+        &self,
+        machine: &MachineParams,
+        name: &str,
+    ) -> Result<EstimatorConfig, ScenarioError> {
+        let named = EstimatorConfig::by_name(name)?;
+        let estimator = named.ok_or(ScenarioError::NoSuchEstimator)?;
+        Ok(tuned_estimator(
+            machine,
+            self.tick_hz,
+            estimator,
+            self.mapped,
+        )?)
     }
 
     /// Ticks of the whole run.

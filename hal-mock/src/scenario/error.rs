@@ -8,6 +8,7 @@ use leadscrew::setpoint::planner::PlannerError;
 use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::setpoint::travel::TravelError;
+use leadscrew::tuning::autotune::AutotuneError;
 
 /// Why a scenario cannot run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub enum ScenarioError {
     Travel(TravelError),
     /// The axis does not do it.
     Refused(Refused),
+    /// Nothing that autotune could offer.
+    Autotune(AutotuneError),
     /// There is no estimator of the name.
     NoSuchEstimator,
 }
@@ -37,6 +40,7 @@ impl fmt::Display for ScenarioError {
             Self::Planner(error) => error.fmt(f),
             Self::Travel(error) => error.fmt(f),
             Self::Refused(error) => error.fmt(f),
+            Self::Autotune(error) => write!(f, "autotune: {error}"),
             Self::NoSuchEstimator => f.write_str("there is no estimator of that name"),
         }
     }

@@ -17,9 +17,9 @@ mod sections;
 mod tuning;
 mod world;
 
-pub use action::{Action, Ask, EncoderTrouble, Interference, Outer, Timed, Trouble};
+pub use action::{Action, Ask, EncoderTrouble, Interference, Outer, Pulse, Timed, Trouble};
 pub use built_in::{BUILT_IN, built_in};
-pub use definition::{Base, MAX_DURATION_S, Scenario, Setting, tick_at};
+pub use definition::{Base, MAX_DURATION_S, Scenario, ScrewReading, Setting, Tuning, tick_at};
 pub use desk::{Desk, LEAD_TICKS};
 pub use error::ScenarioError;
 pub use fate::Fate;
@@ -30,5 +30,7 @@ pub use runner::{Happening, Runner};
 pub use sections::{
     BOARD_SECTIONS, MACHINE_SECTIONS, Visitor, visit_axis, visit_machine, visit_plant,
 };
-pub use tuning::{BANDWIDTH_RAD_PER_S, observer_params, tuned_axis, tuned_estimator};
+pub use tuning::{
+    BANDWIDTH_RAD_PER_S, autotuned_axis, model_of, observer_params, tuned_axis, tuned_estimator,
+};
 pub use world::World;

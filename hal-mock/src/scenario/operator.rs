@@ -1,16 +1,17 @@
 //! The person at the panel: plans what is asked of the axis, outside the tick.
 
 use leadscrew::axis::{Axis, Request};
+use leadscrew::identification::program::{Bounds, Program, Segment, command};
 use leadscrew::params::{AxisConfig, AxisParams};
 use leadscrew::setpoint::planner::{Planner, Timed};
 use leadscrew::setpoint::sources::Source;
-use leadscrew::setpoint::thread::ThreadPhase;
+use leadscrew::setpoint::thread::{ThreadOrder, ThreadPhase};
 use leadscrew::setpoint::travel::TravelLimits;
 use leadscrew::supervisor::State;
 use leadscrew::telemetry::Record;
 use leadscrew::units::{AxisScale, Position, Velocity, checked};
 
-use super::action::Ask;
+use super::action::{Ask, Pulse};
 use super::error::ScenarioError;
 
 /// Farthest position and longest move, mm.
@@ -49,7 +50,8 @@ impl Seen {
             is_planned: in_control
                 && !axis.homing().is_active()
                 && axis.source() == Source::Trajectory
-                && axis.thread_phase() == ThreadPhase::Idle,
+                && axis.thread_phase() == ThreadPhase::Idle
+                && axis.experiment().is_none(),
         }
     }
 }
@@ -119,7 +121,14 @@ impl Operator {
             Ask::Home => return Ok(Order::Axis(Request::Home)),
             Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
             Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
-            Ask::ArmThread(order) => return Ok(Order::Axis(Request::ArmThread(order))),
+            Ask::ArmThread(order) => {
+                return Ok(Order::Axis(Request::ArmThread(self.placed(&order, seen))));
+            }
+            Ask::Experiment(pulse) => {
+                let program = self.program(&pulse)?;
+                return Ok(Order::Axis(Request::StartExperiment(program)));
+            }
+            Ask::EndExperiment => return Ok(Order::Axis(Request::ReleaseExperiment)),
             Ask::SetTravel { low_mm, high_mm } => {
                 let low = self.raw(seen, "low_mm", low_mm)?;
                 let high = self.raw(seen, "high_mm", high_mm)?;
@@ -168,6 +177,21 @@ impl Operator {
         }
     }
 
+    /// A pass whose positions are from the origin of the axis: that of homing, or raw position 0.
+    fn placed(&self, order: &ThreadOrder, seen: &Seen) -> ThreadOrder {
+        let start = match seen.origin {
+            Some(_) => Position::ZERO,
+            None => self.start.unwrap_or_default(),
+        };
+        let from_raw = |mm| mm + self.scale.mm_from_counts(start.to_num());
+        ThreadOrder {
+            start_mm: from_raw(order.start_mm),
+            from_mm: from_raw(order.from_mm),
+            to_mm: from_raw(order.to_mm),
+            ..*order
+        }
+    }
+
     /// The raw position of a coordinate.
     fn raw(&self, seen: &Seen, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
         let origin = seen.origin.or(self.start).unwrap_or_default();
@@ -177,6 +201,25 @@ impl Operator {
     fn distance(&self, name: &'static str, mm: f64) -> Result<Position, ScenarioError> {
         let mm = checked(name, mm, -MAX_TRAVEL_MM, MAX_TRAVEL_MM)?;
         Ok(Position::saturating_from_num(self.scale.counts_from_mm(mm)))
+    }
+
+    /// The program of an experiment, no faster than the axis may go.
+    fn program(&self, pulse: &Pulse) -> Result<Program, ScenarioError> {
+        let ticks = |seconds: f64| (seconds * self.scale.tick_hz()) as u32;
+        let (length, rest) = (ticks(pulse.length_s), ticks(pulse.rest_s));
+        let segments = [Segment::level(pulse.level, length), Segment::rest(rest)];
+        let bounds = Bounds {
+            window_d: self.scale.counts_from_mm(pulse.window_mm) as u32,
+            speed_d_per_tick: libm::ceil(self.scale.velocity_from_feed(self.fastest)?) as u32,
+            ticks: length.saturating_add(rest).saturating_add(1),
+            command: command(pulse.level.max(-pulse.level)),
+        };
+        let program = Program::new(&segments, bounds);
+        Ok(if pulse.is_closed {
+            program.closed()
+        } else {
+            program
+        })
     }
 
     /// A feed; 0 stands for the largest.

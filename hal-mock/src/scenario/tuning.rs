@@ -4,6 +4,7 @@ use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
 use leadscrew::params::{AxisParams, MotionParams, ParamError};
 use leadscrew::tuning::DriveModel;
+use leadscrew::tuning::autotune::{AutotuneError, EstimatorChoice, autotune};
 use leadscrew::units::AxisScale;
 
 use crate::machine::MachineParams;
@@ -44,6 +45,62 @@ pub fn tuned_axis(
 ) -> Result<AxisParams, ParamError> {
     let drive = DriveModel::second_order(machine.drive.natural_period_s, machine.drive.damping);
     Ok(AxisParams {
+        controller: drive.place_poles(bandwidth_rad_per_s)?,
+        ..axis_on(machine, tick_hz, max_feed_mm_per_min, estimator)
+    })
+}
+
+/// The axis of `machine` as [`autotune`] tunes it, for moves at `max_feed_mm_per_min` at most: it is given the drive's
+/// figures as a perfect identification would find them. An observer among estimators is tuned with it, for an encoder
+/// with or without a map (`mapped`).
+///
+/// # Errors
+/// Nothing that autotune could offer.
+pub fn autotuned_axis(
+    machine: &MachineParams,
+    tick_hz: f64,
+    max_feed_mm_per_min: f64,
+    estimator: EstimatorConfig,
+    mapped: bool,
+) -> Result<AxisParams, AutotuneError> {
+    let base = axis_on(machine, tick_hz, max_feed_mm_per_min, estimator);
+    let choice = match estimator {
+        EstimatorConfig::Observer(_) => EstimatorChoice::Observer(observer_params(machine, mapped)),
+        other => EstimatorChoice::AsIs(other),
+    };
+    autotune(&model_of(machine), &base, &choice).map(|(axis, _)| axis)
+}
+
+/// The figures of a machine's drive, as a perfect identification would find them.
+#[must_use]
+pub fn model_of(machine: &MachineParams) -> DriveModel {
+    let drive = &machine.drive;
+    let breakaway = drive.friction_mm_per_min * drive.stiction_ratio;
+    DriveModel {
+        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
+        natural_period_s: drive.natural_period_s,
+        damping: drive.damping,
+        delay_s: drive.delay_s,
+        offset: drive.offset,
+        friction_forward_mm_per_min: drive.friction_mm_per_min,
+        friction_backward_mm_per_min: drive.friction_mm_per_min,
+        breakaway_forward_mm_per_min: breakaway,
+        breakaway_backward_mm_per_min: breakaway,
+        stribeck_mm_per_min: drive.stribeck_mm_per_min,
+        dead_time_s: drive.dead_time_s,
+        resolution: drive.resolution,
+        max_acceleration_m_s2: drive.max_acceleration_m_s2,
+    }
+}
+
+/// An axis of `machine` that is not tuned.
+fn axis_on(
+    machine: &MachineParams,
+    tick_hz: f64,
+    max_feed_mm_per_min: f64,
+    estimator: EstimatorConfig,
+) -> AxisParams {
+    AxisParams {
         tick_hz,
         timer_hz: machine.encoder.encoder.timer_hz,
         motion: MotionParams {
@@ -53,9 +110,8 @@ pub fn tuned_axis(
             counts_per_revolution: machine.encoder.disc.edges_per_revolution,
             ..MotionParams::default()
         },
-        controller: drive.place_poles(bandwidth_rad_per_s)?,
         ..AxisParams::new(estimator)
-    })
+    }
 }
 
 /// What an observer is to count on, on `machine`; with a map of its encoder (`mapped`), what such a map leaves.

@@ -4,15 +4,15 @@ use leadscrew::supervisor::{Fault, State};
 use toml::de::DeTable;
 
 use super::words::{Key, Value, read_all};
-use crate::fault_names::{FAULTS, STATES};
+use crate::fault_names::{FAULT_COUNT, FAULT_NAMES, STATES};
 use crate::toml_file::Complaint;
 
-/// Words of `fault`: none, then those of [`FAULTS`].
-const FAULT_WORDS: [&str; FAULTS.len() + 1] = {
-    let mut words = ["none"; FAULTS.len() + 1];
+/// Words of `fault`: none, then [`FAULT_NAMES`].
+const FAULT_WORDS: [&str; FAULT_COUNT + 1] = {
+    let mut words = ["none"; FAULT_COUNT + 1];
     let mut index = 0;
-    while index < FAULTS.len() {
-        words[index + 1] = FAULTS[index].1;
+    while index < FAULT_COUNT {
+        words[index + 1] = FAULT_NAMES[index];
         index += 1;
     }
     words
@@ -37,6 +37,10 @@ pub enum Figure {
     FollowingErrorRms,
     /// Largest magnitude of the following error at rest, d.
     StandingError,
+    /// Rms of the velocity shown less that of the shaft, d/tick.
+    ShownVelocity,
+    /// Differences between places of rest, d: carriage less position reported.
+    Positioning,
     /// Setpoint at the end, from the start, mm.
     FinalPosition,
     /// Farthest position of the shaft either way, from the start, mm.
@@ -128,6 +132,20 @@ pub const LIMITS: &[Limit] = &[
         Figure::StandingError,
         Bound::AtMost,
         "largest following error from 0.1 s after a motion ends",
+    ),
+    limit(
+        "shown_velocity_rms_d_per_tick",
+        "d/tick",
+        Figure::ShownVelocity,
+        Bound::AtMost,
+        "rms of the velocity shown less that of the shaft, while under control and without a fault",
+    ),
+    limit(
+        "positioning_error_d",
+        "d",
+        Figure::Positioning,
+        Bound::AtMost,
+        "carriage less position reported, from 1 s after a motion ends and since the origin is known: largest less smallest",
     ),
     limit(
         "final_position_mm",
@@ -248,10 +266,7 @@ impl Expectations {
             })
             .filter(|(_, value)| !value.is_nan());
         let place = |value: f64| (!value.is_nan()).then_some(value as usize);
-        let fault = |value: f64| {
-            let found = FAULTS.get(place(value)?.checked_sub(1)?);
-            found.map(|(fault, _)| *fault)
-        };
+        let fault = |value: f64| Fault::ALL.get(place(value)?.checked_sub(1)?).copied();
         Ok(Self {
             limits: stated.collect(),
             fault: fault(words[0]),

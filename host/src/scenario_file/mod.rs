@@ -3,11 +3,14 @@
 pub mod actions;
 pub mod expect;
 mod parts;
+mod screw;
 pub mod words;
 
 use std::path::Path;
 
-use leadscrew_hal_mock::scenario::{Action, MAX_DURATION_S, Scenario, Setting, Timed, tick_at};
+use leadscrew_hal_mock::scenario::{
+    Action, MAX_DURATION_S, Scenario, ScrewReading, Setting, Timed, tick_at,
+};
 use toml::de::{DeTable, DeValue};
 
 use self::expect::Expectations;
@@ -22,6 +25,7 @@ pub struct ScenarioFile {
     pub description: String,
     machine: Vec<Setting>,
     axis: Vec<Setting>,
+    screw: Vec<ScrewReading>,
     timeline: Vec<Timed>,
     /// Actions as the file writes them, in the order of the timeline.
     names: Vec<String>,
@@ -42,12 +46,13 @@ const DURATION: Key = Key {
     default: None,
 };
 
-const TOP: [&str; 7] = [
+const TOP: [&str; 8] = [
     "description",
     "duration_s",
     "machine",
     "axis",
     "encoder",
+    "screw",
     "at",
     "expect",
 ];
@@ -79,13 +84,15 @@ fn parse(text: &str, path: &Path) -> Result<ScenarioFile, Complaint> {
     let axis = AxisPart::read(section(document, "axis")?)?;
     let duration_s = words::read_all(document, &[&DURATION], &TOP, "a scenario", 0..0)?[0];
     let (timeline, names) = timeline(document, duration_s, axis.tick_hz)?;
+    let screw = screw::read(document, &timeline)?;
     Ok(ScenarioFile {
         description: description(document)?,
         frame: Scenario {
             base: machine.base,
             tick_hz: axis.tick_hz,
-            bandwidth_rad_per_s: axis.bandwidth_rad_per_s,
+            tuning: axis.tuning,
             estimator: encoder.estimator,
+            display: encoder.display,
             mapped: encoder.mapped,
             seed: encoder.seed,
             duration_s,
@@ -93,6 +100,7 @@ fn parse(text: &str, path: &Path) -> Result<ScenarioFile, Complaint> {
         },
         machine: machine.settings,
         axis: axis.settings,
+        screw,
         timeline,
         names,
         expect: Expectations::read(section(document, "expect")?)?,
@@ -119,6 +127,7 @@ impl ScenarioFile {
         Scenario {
             machine: &self.machine,
             axis: &self.axis,
+            screw: &self.screw,
             timeline: &self.timeline,
             ..self.frame
         }

@@ -6,7 +6,7 @@ use leadscrew::estimator::{EstimatorConfig, difference};
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{AxisParams, SectionVisitor};
 use leadscrew_hal_mock::scenario::{
-    BANDWIDTH_RAD_PER_S, BOARD_SECTIONS, Base, MACHINE_SECTIONS, Plant, Setting, Visitor,
+    BANDWIDTH_RAD_PER_S, BOARD_SECTIONS, Base, MACHINE_SECTIONS, Plant, Setting, Tuning, Visitor,
     visit_axis, visit_plant,
 };
 use toml::de::{DeTable, DeValue};
@@ -116,10 +116,17 @@ const BANDWIDTH: Key = Key {
     default: Some(BANDWIDTH_RAD_PER_S),
 };
 
+const TUNING: Key = Key {
+    name: "tuning",
+    what: "how the loop is tuned",
+    value: Value::Word(&["place-poles", "autotune"]),
+    default: Some(0.0),
+};
+
 /// `[axis]`.
 pub struct AxisPart {
     pub tick_hz: f64,
-    pub bandwidth_rad_per_s: f64,
+    pub tuning: Tuning,
     pub settings: Vec<Setting>,
 }
 
@@ -127,7 +134,7 @@ impl AxisPart {
     pub fn read(table: Option<&DeTable<'_>>) -> Result<Self, Complaint> {
         let empty = DeTable::new();
         let table = table.unwrap_or(&empty);
-        let keys = [&TICK_HZ, &BANDWIDTH];
+        let keys = [&TICK_HZ, &BANDWIDTH, &TUNING];
         let mut axis = any_axis();
         let sections = Sections::of(&mut axis);
         let values = read_all(table, &keys, &sections, "[axis]", 0..0)?;
@@ -150,9 +157,28 @@ impl AxisPart {
         }
         Ok(Self {
             tick_hz: values[0],
-            bandwidth_rad_per_s: values[1],
+            tuning: tuning(table, values[1], values[2] == 1.0)?,
             settings,
         })
+    }
+}
+
+fn tuning(
+    table: &DeTable<'_>,
+    bandwidth_rad_per_s: f64,
+    is_autotuned: bool,
+) -> Result<Tuning, Complaint> {
+    if !is_autotuned {
+        return Ok(Tuning::PlacePoles {
+            bandwidth_rad_per_s,
+        });
+    }
+    match table.get(BANDWIDTH.name) {
+        None => Ok(Tuning::Autotune),
+        Some(value) => Err(Complaint::new(
+            value.span(),
+            "autotune finds the bandwidth itself: leave bandwidth_rad_per_s out, or write tuning = \"place-poles\"",
+        )),
     }
 }
 
@@ -224,6 +250,8 @@ pub struct EncoderPart {
     pub seed: u64,
     pub mapped: bool,
     pub estimator: &'static str,
+    /// A second one, for display.
+    pub display: Option<&'static str>,
 }
 
 impl EncoderPart {
@@ -231,23 +259,24 @@ impl EncoderPart {
         let empty = DeTable::new();
         let table = table.unwrap_or(&empty);
         let keys = [&SEED, &MAP];
-        let values = read_all(table, &keys, &["estimator"], "[encoder]", 0..0)?;
+        let values = read_all(table, &keys, &["estimator", "display"], "[encoder]", 0..0)?;
         Ok(Self {
             seed: values[0] as u64,
             mapped: values[1] == 1.0,
-            estimator: estimator(table)?,
+            estimator: estimator(table, "estimator")?.unwrap_or("exponential"),
+            display: estimator(table, "display")?,
         })
     }
 }
 
-fn estimator(table: &DeTable<'_>) -> Result<&'static str, Complaint> {
+fn estimator(table: &DeTable<'_>, key: &str) -> Result<Option<&'static str>, Complaint> {
     let names = EstimatorConfig::NAMES;
-    let Some(value) = table.get("estimator") else {
-        return Ok("exponential");
+    let Some(value) = table.get(key) else {
+        return Ok(None);
     };
     let word = value.get_ref().as_str().unwrap_or_default();
     let found = names.iter().find(|name| **name == word);
-    found.copied().ok_or_else(|| {
+    found.copied().map(Some).ok_or_else(|| {
         let hint = suggestion(word, names.iter().copied());
         Complaint::new(value.span(), format!("unknown estimator `{word}`{hint}"))
     })

@@ -10,6 +10,8 @@ use crate::statistics::Spread;
 
 /// Time after a motion from which on the axis has to stand, s.
 const SETTLED_S: f64 = 0.1;
+/// Time after a motion from which on the carriage is where it is to be: compensation that came into force has, s.
+const PLACED_S: f64 = 1.0;
 /// The shaft stands if it does not leave 1 d for so long, s.
 const STANDING_S: f64 = 0.05;
 
@@ -22,6 +24,10 @@ pub struct Figures {
     pub peak_tick: usize,
     /// Following error from 0.1 s after each motion, d.
     pub standing: Spread,
+    /// Velocity shown less that of the shaft, while under control and without a fault, d/tick.
+    pub shown_velocity: Spread,
+    /// Carriage less reported position at rest since the origin is known: smallest and largest, d.
+    pub off: Option<(f64, f64)>,
     /// Setpoint at the end, from the start, mm.
     pub final_position_mm: f64,
     /// Farthest positions of the shaft, from the start, mm.
@@ -74,7 +80,7 @@ impl Figures {
         let (Some(first), Some(last)) = (record.ticks.first(), record.ticks.last()) else {
             return figures;
         };
-        let settled = (SETTLED_S * record.tick_hz) as usize;
+        let [settled, placed] = [SETTLED_S, PLACED_S].map(|time| (time * record.tick_hz) as usize);
         let mut moved_at = 0;
         for (tick, found) in record.ticks.iter().enumerate() {
             let outputs = &found.outputs;
@@ -87,8 +93,15 @@ impl Figures {
                     figures.peak_tick = tick;
                 }
                 figures.following.push(error);
+                let shown: f64 = outputs.estimate.velocity.to_num();
+                figures.shown_velocity.push(shown - found.shaft.velocity);
                 if tick - moved_at > settled {
                     figures.standing.push(error);
+                }
+                if found.homed && tick - moved_at > placed {
+                    let off = found.carriage - outputs.reported.to_num::<f64>();
+                    let (low, high) = figures.off.unwrap_or((off, off));
+                    figures.off = Some((low.min(off), high.max(off)));
                 }
             }
             let way = (found.shaft.position - first.shaft.position) / record.counts_per_mm;
@@ -112,6 +125,8 @@ impl Figures {
             Figure::FollowingErrorPeak => self.following.peak_of_some(),
             Figure::FollowingErrorRms => self.following.rms_of_some(),
             Figure::StandingError => self.standing.peak_of_some(),
+            Figure::ShownVelocity => self.shown_velocity.rms_of_some(),
+            Figure::Positioning => self.off.map(|(low, high)| high - low),
             Figure::FinalPosition => Some(self.final_position_mm),
             Figure::Travel => Some(self.travel_mm.1.max(-self.travel_mm.0)),
             Figure::Detected => Some(stop?.detected?.0),

@@ -5,13 +5,18 @@ mod figures;
 mod judge;
 
 use leadscrew::axis::{Axis, Outputs};
+use leadscrew::compensation::{
+    ScrewError, ScrewPoint, ScrewTable, Stretch, TableError, TableRefused,
+};
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::identification::experiment::{Ending, Experiment};
 use leadscrew::setpoint::thread::SpindleTrouble;
 use leadscrew::supervisor::FirstFault;
+use leadscrew::units::Position;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::invariants::Violation;
-use leadscrew_hal_mock::scenario::{Happening, Runner, Scenario, ScenarioError};
+use leadscrew_hal_mock::scenario::{Happening, Runner, Scenario, ScenarioError, ScrewReading};
 use thiserror::Error;
 
 pub use self::events::{Event, What};
@@ -30,6 +35,8 @@ pub struct Tick {
     pub shaft: State,
     /// Carriage, d.
     pub carriage: f64,
+    /// The origin is known.
+    pub homed: bool,
 }
 
 /// A finished run.
@@ -65,6 +72,12 @@ pub enum RunError {
     /// The encoder's map cannot be read back.
     #[error("the encoder's map cannot be used: {0}")]
     Image(#[from] leadscrew::encoder_map::error::MapError),
+    /// The points of the screw make no table.
+    #[error("[[screw]]: {0}")]
+    Screw(#[from] TableError),
+    /// The axis cannot follow the table of the screw.
+    #[error("[[screw]]: {0}")]
+    Table(#[from] TableRefused),
 }
 
 /// Runs a scenario.
@@ -74,8 +87,26 @@ pub enum RunError {
 pub fn run(scenario: &Scenario<'_>) -> Result<Record, RunError> {
     let image = scenario.mapped.then(|| learn(scenario)).transpose()?;
     let map = image.as_deref().map(EncoderMap::from_bytes).transpose()?;
-    // The map has to live as long as what the runner borrows.
-    run_with(&Scenario { ..*scenario }, map)
+    let points = screw_points(scenario);
+    let mut memory = vec![Stretch::default(); points.len()];
+    let screw = if points.is_empty() {
+        None
+    } else {
+        Some(ScrewTable::build(&points, &mut memory)?)
+    };
+    // Map and table have to live as long as what the runner borrows.
+    run_with(&Scenario { ..*scenario }, map, screw)
+}
+
+/// The readings of the screw in d.
+fn screw_points(scenario: &Scenario<'_>) -> Vec<ScrewPoint> {
+    let counts = scenario.plant().machine.mount.counts_per_mm;
+    let point = |reading: &ScrewReading| ScrewPoint {
+        position: Position::saturating_from_num(reading.position_mm * counts),
+        error: [reading.forward_mm, reading.backward_mm]
+            .map(|error| ScrewError::saturating_from_num(error * counts)),
+    };
+    scenario.screw.iter().map(point).collect()
 }
 
 fn learn(scenario: &Scenario<'_>) -> Result<Vec<u8>, CalibrationError> {
@@ -87,12 +118,18 @@ fn learn(scenario: &Scenario<'_>) -> Result<Vec<u8>, CalibrationError> {
     learn_simulated(&model, scenario.seed, &procedure)
 }
 
-fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<Record, RunError> {
+fn run_with<'s>(
+    scenario: &Scenario<'s>,
+    map: Option<EncoderMap<'s>>,
+    screw: Option<ScrewTable<'s>>,
+) -> Result<Record, RunError> {
     let mut runner = Runner::new(scenario)?;
     runner.axis.set_map(map);
+    runner.axis.set_screw_table(screw)?;
     let mut progress = Progress::new("simulating", u64::from(runner.ticks()));
     let mut ticks = Vec::with_capacity(runner.ticks() as usize);
     let (mut actions, mut faults) = (Vec::new(), Vec::new());
+    let mut experiment = None;
     while let Some(outputs) = runner.step(|happening| actions.push(happening)) {
         let outputs = *outputs;
         let latched = runner.axis.supervisor().first_fault();
@@ -105,7 +142,13 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
             outputs,
             shaft: machine.screw(),
             carriage: machine.truth().carriage.position,
+            homed: runner.axis.homing().origin().is_some(),
         });
+        experiment = runner
+            .axis
+            .experiment()
+            .map(Experiment::ending)
+            .or(experiment);
         progress.step();
     }
     Ok(Record {
@@ -113,7 +156,7 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
         actions,
         faults,
         violation: runner.violation(),
-        notes: notes(&runner.axis),
+        notes: notes(&runner.axis, experiment),
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
         counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
@@ -121,7 +164,7 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
 }
 
 /// What the axis has to say beside its faults.
-fn notes(axis: &Axis<'_>) -> Vec<String> {
+fn notes(axis: &Axis<'_>, experiment: Option<Option<Ending>>) -> Vec<String> {
     let homing = axis.homing().failure().map(|failure| failure.to_string());
     let distance = axis
         .homing()
@@ -137,5 +180,22 @@ fn notes(axis: &Axis<'_>) -> Vec<String> {
         };
         format!("spindle: {what}")
     });
-    [homing, distance, spindle].into_iter().flatten().collect()
+    let experiment = experiment.map(|found| format!("experiment: {}", ending(found)));
+    [homing, distance, spindle, experiment]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// How the last experiment ended, if it did.
+const fn ending(found: Option<Ending>) -> &'static str {
+    match found {
+        None => "broken off before its end",
+        Some(Ending::Complete) => "it came to its end",
+        Some(Ending::WindowLeft) => "the axis left its window",
+        Some(Ending::TooFast) => "the axis was too fast",
+        Some(Ending::TooLong) => "it took too long",
+        Some(Ending::Aborted) => "it was aborted",
+        Some(Ending::NotPermitted) => "the supervisor ended it",
+    }
 }

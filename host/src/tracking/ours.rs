@@ -10,11 +10,11 @@ use leadscrew::estimator::observer::{Config, ObserverParams};
 use leadscrew::hal::Encoder;
 use leadscrew::params::AxisParams;
 use leadscrew::setpoint::profile::{Limits, Profile};
-use leadscrew::tuning::DriveModel;
 use leadscrew::tuning::autotune::{AutotuneError, EstimatorChoice, Report, autotune};
 use leadscrew::units::{AxisScale, Position};
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
 use leadscrew_hal_mock::scenario::ScenarioError;
+pub use leadscrew_hal_mock::scenario::model_of;
 
 use crate::statistics::Spread;
 
@@ -290,28 +290,6 @@ const APPROACH_MM_PER_MIN: f64 = 1200.0;
 const START_D: f64 = 0.5;
 /// Time of a creep, s.
 const CREEP_S: f64 = 10.0;
-
-/// The figures of a simulated machine's drive, as a perfect identification would find them.
-#[must_use]
-pub fn model_of(machine: &MachineParams) -> DriveModel {
-    let drive = &machine.drive;
-    let breakaway = drive.friction_mm_per_min * drive.stiction_ratio;
-    DriveModel {
-        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
-        natural_period_s: drive.natural_period_s,
-        damping: drive.damping,
-        delay_s: drive.delay_s,
-        offset: drive.offset,
-        friction_forward_mm_per_min: drive.friction_mm_per_min,
-        friction_backward_mm_per_min: drive.friction_mm_per_min,
-        breakaway_forward_mm_per_min: breakaway,
-        breakaway_backward_mm_per_min: breakaway,
-        stribeck_mm_per_min: drive.stribeck_mm_per_min,
-        dead_time_s: drive.dead_time_s,
-        resolution: drive.resolution,
-        max_acceleration_m_s2: drive.max_acceleration_m_s2,
-    }
-}
 
 /// Our axis tuned on `machine` by [`autotune`], with an observer that counts on a learned map.
 ///

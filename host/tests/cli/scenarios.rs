@@ -169,6 +169,48 @@ fn mistakes_are_shown_with_file_and_line() {
 }
 
 #[test]
+fn mistakes_of_tuning_screw_and_experiments_say_what_to_do() {
+    let quick = |rest: &str| format!("duration_s = 1\n{rest}");
+    refused(
+        4,
+        &quick("[axis]\ntuning = 'autotune'\nbandwidth_rad_per_s = 50"),
+        &[
+            "autotune finds the bandwidth itself",
+            "leave bandwidth_rad_per_s out",
+        ],
+    );
+    refused(
+        3,
+        &quick("[axis]\ntuning = 'auto'"),
+        &["did you mean `autotune`?"],
+    );
+    refused(
+        3,
+        &quick("[encoder]\ndisplay = 'polynom'"),
+        &["did you mean `polynomial`?"],
+    );
+    let point = "[[screw]]\nposition_mm = 1\nforward_um = 3\n";
+    refused(2, &quick(point), &["once the axis is homed", "\"home\""]);
+    let home = "[[at]]\ntime_s = 0.1\naction = 'home'\n";
+    refused(
+        4,
+        &quick(&format!("{}{home}", point.replace("_um", ""))),
+        &["did you mean `forward_um`?"],
+    );
+    refused(2, &quick("[screw]\nposition_mm = 1"), &["write [[screw]]"]);
+    refused(
+        2,
+        &quick("[[at]]\ntime_s = 0\naction = 'experiment'\nlevel = 0.1\nlength_s = 0.1"),
+        &["needs `window_mm`"],
+    );
+
+    let folder = Folder::new();
+    folder.write("run.toml", quick(&format!("{point}{home}")));
+    let message = folder.refused(1, "sim --scenario run.toml");
+    assert_says(&message, &["run.toml: [[screw]]: ", "allowed 2 to 256"]);
+}
+
+#[test]
 fn a_scenario_and_a_move_exclude_each_other() {
     let folder = Folder::new();
     folder.write("run.toml", FAULT);

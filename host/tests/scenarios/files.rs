@@ -2,7 +2,7 @@
 
 use leadscrew::supervisor::Fault;
 use leadscrew_hal_mock::scenario::BUILT_IN;
-use leadscrew_host::fault_names::{FAULTS, fault_name};
+use leadscrew_host::fault_names::fault_name;
 use leadscrew_host::scenario_run::{Figures, judge, run};
 
 use super::{complaints, paths, read};
@@ -42,24 +42,6 @@ fn every_fault_has_a_scenario_that_trips_it() {
         .map(|fault| fault_name(*fault))
         .collect();
     assert!(missing.is_empty(), "{missing:?}");
-}
-
-#[test]
-fn the_names_of_files_are_those_of_the_code() {
-    let kebab = |name: &str| {
-        let mut text = String::new();
-        for letter in name.chars() {
-            if letter.is_uppercase() && !text.is_empty() {
-                text.push('-');
-            }
-            text.extend(letter.to_lowercase());
-        }
-        text
-    };
-    assert_eq!(FAULTS.len(), Fault::ALL.len());
-    for (fault, name) in FAULTS {
-        assert_eq!(name, kebab(fault.name()));
-    }
 }
 
 #[test]

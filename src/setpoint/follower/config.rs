@@ -129,7 +129,7 @@ impl Config {
     }
 
     /// How far ahead of `setpoint` a stop that takes over there ends, d, signed: never less than it will be in the
-    /// direction in which it ends, and more by a few d at the most. Some 60 instructions.
+    /// direction in which it ends, and more by a few d at the most.
     #[must_use]
     pub fn stopping_distance(&self, setpoint: &Setpoint) -> Position {
         let before = i64::from(setpoint.acceleration.to_bits()).wrapping_shl(ACCELERATION_SHIFT);

@@ -17,9 +17,11 @@
 
 mod order;
 mod plan;
+mod reach;
 
 pub use order::{SpindleWay, ThreadFigures, ThreadOrder, ThreadParams, ThreadRefusal};
 pub use plan::{Config, Plan};
+pub use reach::{Standing, ThreadPlace};
 
 use super::Setpoint;
 use super::master::Master;

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::reach::ThreadPlace;
 use crate::parameter_table;
 use crate::setpoint::profile::PlanError;
 use crate::units::{RangeError, checked};
@@ -131,6 +132,17 @@ pub enum ThreadRefusal {
         /// Way there is, mm.
         available_mm: f64,
     },
+    /// The pass would leave the soft limits of travel.
+    BeyondTravel {
+        /// The place that lies beyond them.
+        place: ThreadPlace,
+        /// Where it lies, mm.
+        at_mm: f64,
+        /// The low limit, mm.
+        low_mm: f64,
+        /// The high limit, mm.
+        high_mm: f64,
+    },
     /// The positions do not follow one another in one direction.
     Order,
     /// A start that the thread has not.
@@ -188,6 +200,16 @@ impl fmt::Display for ThreadRefusal {
             } => write!(
                 f,
                 "the run-in needs {needed_mm:.3} mm and has {available_mm:.3}: start farther away or turn slower"
+            ),
+            Self::BeyondTravel {
+                place,
+                at_mm,
+                low_mm,
+                high_mm,
+            } => write!(
+                f,
+                "{place} at {at_mm:.3} mm, and the soft limits of travel are {low_mm:.3} to {high_mm:.3} mm: {}",
+                place.remedy()
             ),
             Self::Order => f.write_str(
                 "start_mm, from_mm and to_mm must follow one another in the direction of the thread",

@@ -6,6 +6,7 @@
 //! x_start = L/C·(c_s + R/2 − c₀). That fixes c_s, up to whole revolutions, whatever the speed and however it changes.
 
 use super::order::{SpindleWay, ThreadFigures, ThreadOrder, ThreadParams, ThreadRefusal};
+use super::reach::{Reach, Standing};
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::master::Master;
 use crate::setpoint::profile::{Limits, Profile};
@@ -91,8 +92,7 @@ struct Sketch {
 }
 
 impl Config {
-    /// Plans the pass `order` for an axis that stands at `position`, with its users' origin at `origin`, by the
-    /// spindle as it turns now.
+    /// Plans the pass `order` for an axis that stands as `standing` says, by the spindle as it turns now.
     ///
     /// # Errors
     /// [`ThreadRefusal`] with the figures that it is about.
@@ -100,8 +100,7 @@ impl Config {
         &self,
         order: &ThreadOrder,
         master: &Master,
-        position: Position,
-        origin: Position,
+        standing: &Standing,
     ) -> Result<(Plan, ThreadFigures), ThreadRefusal> {
         order.check()?;
         let way = match order.spindle {
@@ -113,10 +112,12 @@ impl Config {
         let figures = self.figures(order, &sketch)?;
 
         let start_d = self.scale.counts_from_mm(order.start_mm);
-        let start = origin.saturating_add(Position::saturating_from_num(start_d));
+        let start = standing
+            .origin
+            .saturating_add(Position::saturating_from_num(start_d));
         let direction = if sketch.slope < 0.0 { -1.0 } else { 1.0 };
         let take_up = self.scale.counts_from_mm(self.params.thread_take_up_mm) * direction;
-        let first = start.saturating_sub(Position::saturating_from_num(take_up));
+        let take_up = start.saturating_sub(Position::saturating_from_num(take_up));
 
         let part = order.angle_deg / 360.0 + f64::from(order.start) / f64::from(order.starts);
         // From the index, so that nothing is lost after many revolutions.
@@ -148,11 +149,20 @@ impl Config {
                 velocity(sketch.fastest),
             ),
             settle: (self.params.thread_settle_s * self.scale.tick_hz()) as u32,
-            approach: [leg(position, first)?, leg(first, start)?],
+            approach: [leg(standing.position, take_up)?, leg(take_up, start)?],
         };
         plan.rest = plan
             .line(plan.end)
             .saturating_add(Position::from_bits(ramp_way.wrapping_shr(1)));
+        if let Some(travel) = &standing.travel {
+            let rest = plan.rest;
+            let reach = Reach {
+                take_up,
+                start,
+                rest,
+            };
+            reach.check(travel, standing.origin, self.scale)?;
+        }
         plan.bring_ahead(master);
         Ok((plan, figures))
     }

@@ -47,7 +47,11 @@ struct Tuned {
 /// Bad usage, a bad machine file, a machine that cannot be identified or tuned, or a file that cannot be written.
 pub fn run(args: &AutotuneArgs) -> Result<(), CommandError> {
     if let Some(path) = &args.out {
-        check_replaceable("--out", path, Some(Path::new(&args.bench.machine)))?;
+        check_replaceable(
+            "--out",
+            path,
+            Some(Path::new(&args.bench.simulated.machine)),
+        )?;
     }
     let max_feed = checked("--max-feed", args.max_feed, 0.1, 1e6)
         .map_err(|error| CommandError::Usage(format!("{error} mm/min")))?;
@@ -87,7 +91,7 @@ fn tune(
         AutotuneError::Param(error) => {
             CommandError::Usage(format!("--max-feed {max_feed}: {error}"))
         }
-        error => CommandError::Data(format!("{}: {error}", args.bench.machine)),
+        error => CommandError::Data(format!("{}: {error}", args.bench.simulated.machine)),
     };
     let start = Config::of_16k20f3().map_err(|error| CommandError::Data(error.to_string()))?;
     let base = bench

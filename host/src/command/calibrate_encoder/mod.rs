@@ -14,7 +14,7 @@ use crate::cli::{CalibrateEncoderArgs, MapForm};
 use crate::error::CommandError;
 use crate::plot::PlotError;
 use crate::progress::Progress;
-use crate::recording::{self, ChannelSelection, Recording};
+use crate::recording::Recording;
 use report::Report;
 
 /// Largest tolerance that is one, d.
@@ -63,7 +63,7 @@ fn options(args: &CalibrateEncoderArgs) -> Result<Options, CommandError> {
         )));
     }
     let form = Form::from(args.form);
-    if args.z.is_none() && form != Form::Phases {
+    if args.channels.z.is_none() && form != Form::Phases {
         return Err(CommandError::Usage(
             CalibrationError::NoIndexChannel.to_string(),
         ));
@@ -83,7 +83,7 @@ fn options(args: &CalibrateEncoderArgs) -> Result<Options, CommandError> {
             Motion::Steady
         },
         form,
-        indexed: args.z.is_some(),
+        indexed: args.channels.z.is_some(),
         requirements: Requirements {
             two_speeds: !args.accept_one_speed,
             both_directions: !args.accept_one_direction,
@@ -119,13 +119,7 @@ fn check_outputs(args: &CalibrateEncoderArgs) -> Result<(), CommandError> {
 }
 
 fn read(args: &CalibrateEncoderArgs) -> Result<Vec<Recording>, CommandError> {
-    let channels = ChannelSelection {
-        a: args.a.clone(),
-        b: args.b.clone(),
-        z: args.z.clone(),
-    };
-    let _reading = Progress::endless("reading");
-    let read = |file: &PathBuf| Ok(recording::read(file, &channels, args.samplerate)?);
+    let read = |file: &PathBuf| Ok(args.channels.read(file)?);
     args.files.iter().map(read).collect()
 }
 

@@ -25,13 +25,17 @@ pub fn run(args: &IdentifyArgs) -> Result<(), CommandError> {
         if !is_picture(path) {
             return Err(PlotError::Extension { path: path.clone() }.into());
         }
-        check_replaceable("--plot", path, Some(Path::new(&args.bench.machine)))?;
+        check_replaceable(
+            "--plot",
+            path,
+            Some(Path::new(&args.bench.simulated.machine)),
+        )?;
     }
     let bench = bench(&args.bench)?;
     let found = identify(&args.bench, &bench)?;
     if let Some(path) = &args.plot {
         let _drawing = Progress::endless("drawing");
-        figure(&args.bench.machine, &found).save(path)?;
+        figure(&args.bench.simulated.machine, &found).save(path)?;
     }
     let report = Report::new(&args.bench, &bench, &found);
     if args.json {
@@ -43,7 +47,7 @@ pub fn run(args: &IdentifyArgs) -> Result<(), CommandError> {
 
 /// The machine and the bounds that the arguments ask for.
 pub(super) fn bench(args: &BenchArgs) -> Result<Bench, CommandError> {
-    let (_, machine) = machine(&args.machine)?;
+    let (_, machine) = machine(&args.simulated.machine)?;
     let usage = |unit: &'static str| {
         move |error: leadscrew::units::RangeError| CommandError::Usage(format!("{error} {unit}"))
     };
@@ -53,11 +57,11 @@ pub(super) fn bench(args: &BenchArgs) -> Result<Bench, CommandError> {
             window_mm: checked("--window-mm", args.window_mm, 0.1, 1000.0).map_err(usage("mm"))?,
             ..IdentifyParams::default()
         },
-        tick_hz: tick_rate(args.tick_hz)?,
+        tick_hz: tick_rate(args.simulated.tick_hz)?,
         nominal_feed_mm_per_min: checked("--nominal-feed", args.nominal_feed, 0.1, 1e6)
             .map_err(usage("mm/min"))?,
         reversed: args.reverse_drive,
-        seed: args.seed,
+        seed: args.simulated.seed,
     })
 }
 
@@ -66,7 +70,7 @@ pub(super) fn identify(args: &BenchArgs, bench: &Bench) -> Result<Found, Command
     let _identifying = Progress::endless("identifying");
     bench.run().map_err(|error| match error {
         IdentifyError::Param(error) => CommandError::Usage(error.to_string()),
-        refused => CommandError::Data(format!("{}: {refused}", args.machine)),
+        refused => CommandError::Data(format!("{}: {refused}", args.simulated.machine)),
     })
 }
 

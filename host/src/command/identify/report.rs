@@ -87,7 +87,7 @@ impl Report {
     pub fn new(args: &BenchArgs, bench: &Bench, found: &Found) -> Self {
         Self {
             schema: "leadscrew/identify/1",
-            machine: args.machine.clone(),
+            machine: args.simulated.machine.clone(),
             tick_hz: bench.tick_hz,
             window_mm: bench.params.window_mm,
             seed: bench.seed,

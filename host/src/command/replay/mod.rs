@@ -23,7 +23,7 @@ use crate::listening::Listening;
 use crate::map_file::MapFile;
 use crate::plot::Figure;
 use crate::progress::Progress;
-use crate::recording::{self, ChannelSelection, Recording};
+use crate::recording::Recording;
 use crate::report::CsvReport;
 use crate::sampler::{Sampler, Totals};
 use crate::simulation::all_estimators;
@@ -47,18 +47,10 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
         .map(|config| at_rate(config, tick_hz))
         .collect::<Result<Vec<_>, _>>()?;
     let span = Span::new(args.from_s, args.to_s)?;
-    let channels = ChannelSelection {
-        a: args.a.clone(),
-        b: args.b.clone(),
-        z: args.z.clone(),
-    };
     check_outputs(&args.output, Some(&args.file))?;
     check_outputs(&args.output, args.map.as_deref())?;
     let map = args.map.as_deref().map(MapFile::read).transpose()?;
-    let recording = {
-        let _reading = Progress::endless("reading");
-        recording::read(&args.file, &channels, args.samplerate)?
-    };
+    let recording = args.channels.read(&args.file)?;
     let replay = Replay::of(&args.file, &recording, tick_hz, &configs, map.as_ref())?;
 
     if let Some(path) = &args.output.csv {
@@ -70,7 +62,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
     }
     let map = map.as_ref().zip(replay.tie);
     let map = map
-        .map(|(file, tie)| MapFigures::new(file, tie, args.z.is_some()))
+        .map(|(file, tie)| MapFigures::new(file, tie, args.channels.z.is_some()))
         .transpose()?;
     let report = Report::new(&replay, &span, map);
     if args.output.json {

@@ -51,11 +51,11 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
     if let Some(path) = &args.scenario {
         return scenario::command(args, path);
     }
-    let (base, machine) = machine(&args.machine)?;
+    let (base, machine) = machine(&args.simulated.machine)?;
     if args.dump_machine {
         return print(&machine_file::dump(base, &machine));
     }
-    check_outputs(&args.output, Some(Path::new(&args.machine)))?;
+    check_outputs(&args.output, Some(Path::new(&args.simulated.machine)))?;
     let spec = spec(args, machine)?;
     let run = spec
         .run()
@@ -65,9 +65,9 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
     }
     if let Some(path) = &args.output.plot {
         let _drawing = Progress::endless("drawing");
-        figure(&args.machine, &spec, &run).save(path)?;
+        figure(&args.simulated.machine, &spec, &run).save(path)?;
     }
-    let report = Report::new(&args.machine, &spec, &run);
+    let report = Report::new(&args.simulated.machine, &spec, &run);
     if args.output.json {
         print_json(&report)
     } else {
@@ -76,7 +76,7 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
 }
 
 fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, CommandError> {
-    let tick_hz = tick_rate(args.tick_hz)?;
+    let tick_hz = tick_rate(args.simulated.tick_hz)?;
     let move_mm = checked("--move-mm", args.move_mm, -MAX_MOVE_MM, MAX_MOVE_MM)
         .map_err(|error| CommandError::Usage(format!("{error} mm")))?;
     check_length(args)?;
@@ -89,14 +89,14 @@ fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, Comm
         machine,
         scenario,
         estimator: estimator(&args.estimator)?,
-        seed: args.seed,
+        seed: args.simulated.seed,
         map: None,
     })
 }
 
 /// Refuses a run that is too long to be kept; the ramps that it adds to this do not matter.
 fn check_length(args: &SimArgs) -> Result<(), CommandError> {
-    let cruise_ticks = 2.0 * (args.move_mm / args.feed).abs() * 60.0 * args.tick_hz;
+    let cruise_ticks = 2.0 * (args.move_mm / args.feed).abs() * 60.0 * args.simulated.tick_hz;
     if args.feed > 0.0 && cruise_ticks > MAX_TICKS as f64 {
         return Err(CommandError::Usage(format!(
             "{} mm at {} mm/min and back are {cruise_ticks:.0} ticks, more than the {MAX_TICKS} that are kept in \
@@ -117,18 +117,17 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             "max_feed_mm_per_min" | "max_velocity_d_per_tick" => feed,
             // Right in m/s² and m/s³, too much in a tick this long or too little in one this short.
             "max_acceleration_d_per_tick2" | "max_jerk_d_per_tick3" => {
-                format!("--tick-hz {}", args.tick_hz)
-            }
-            name if name.contains("gain") || name.contains("feedforward") => {
-                return untunable(args, drive, range);
+                format!("--tick-hz {}", args.simulated.tick_hz)
             }
             _ => return error.into(),
         },
-        ScenarioError::Param(ParamError::TravelReversed { .. }) => return error.into(),
+        ScenarioError::Param(ParamError::Law(range)) => return untunable(args, drive, range),
         ScenarioError::Plan(_) | ScenarioError::Queue(_) => format!("--move-mm {}", args.move_mm),
-        ScenarioError::Planner(_) | ScenarioError::Travel(_) | ScenarioError::Refused(_) => {
-            return error.into();
-        }
+        ScenarioError::Param(ParamError::TravelReversed { .. })
+        | ScenarioError::Planner(_)
+        | ScenarioError::Travel(_)
+        | ScenarioError::Refused(_)
+        | ScenarioError::Autotune(_) => return error.into(),
         ScenarioError::NoSuchEstimator => format!("--estimator {}", args.estimator),
     };
     CommandError::Usage(format!("{blamed}: {error}"))
@@ -139,7 +138,7 @@ fn untunable(args: &SimArgs, drive: &DriveParams, range: &RangeError) -> Command
     CommandError::Data(format!(
         "{}: a loop cannot be tuned on this machine's drive at {} Hz: [drive] natural_period_s = {} and \
          damping = {} give no usable gain ({range}): make them smaller or change --tick-hz",
-        args.machine, args.tick_hz, drive.natural_period_s, drive.damping
+        args.simulated.machine, args.simulated.tick_hz, drive.natural_period_s, drive.damping
     ))
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::scenes::SceneName;
+use crate::cli::ChannelArgs;
 
 /// What the figures mean.
 const MEASURES: &str = "\
@@ -23,7 +24,7 @@ pub struct TuneFilterArgs {
     #[arg(conflicts_with = "scene")]
     pub file: Option<PathBuf>,
     /// A simulated scene instead
-    #[arg(long, value_enum, value_name = "NAME")]
+    #[arg(long, value_enum, value_name = "NAME", conflicts_with_all = ["a", "b", "z", "samplerate"])]
     pub scene: Option<SceneName>,
     /// Control rate, Hz (100 to 40000)
     #[arg(
@@ -58,23 +59,9 @@ pub struct TuneFilterArgs {
         allow_negative_numbers = true
     )]
     pub seed: u64,
-    /// Channel A of a capture: its exact name, else its index from 0 [default: the first one-bit signal]
-    #[arg(long, value_name = "CH", conflicts_with = "scene")]
-    pub a: Option<String>,
-    /// Channel B [default: the second one-bit signal]
-    #[arg(long, value_name = "CH", conflicts_with = "scene")]
-    pub b: Option<String>,
-    /// Channel Z (index) [default: none]
-    #[arg(long, value_name = "CH", conflicts_with = "scene")]
-    pub z: Option<String>,
-    /// Sampling rate of a sigrok CSV that does not state it, Hz
-    #[arg(
-        long,
-        value_name = "HZ",
-        conflicts_with = "scene",
-        allow_negative_numbers = true
-    )]
-    pub samplerate: Option<u64>,
+    /// Channels of a capture
+    #[command(flatten)]
+    pub channels: ChannelArgs,
     /// The encoder's map; all of it but its phases is tied to the index, which --z names
     #[arg(long, value_name = "FILE", conflicts_with = "scene")]
     pub map: Option<PathBuf>,

@@ -16,7 +16,7 @@ use crate::error::CommandError;
 use crate::listening::Listening;
 use crate::map_file::MapFile;
 use crate::progress::Progress;
-use crate::recording::{self, ChannelSelection, Recording};
+use crate::recording::Recording;
 use crate::sampler::Sampler;
 
 /// Differences of all candidates from the trend of the capture in `file`, and what became of the map.
@@ -31,15 +31,7 @@ pub(super) fn judge(
 ) -> Result<(Vec<Judge>, Option<MapFigures>), CommandError> {
     let span = Span::new(args.from_s, args.to_s)?;
     let map = args.map.as_deref().map(MapFile::read).transpose()?;
-    let channels = ChannelSelection {
-        a: args.a.clone(),
-        b: args.b.clone(),
-        z: args.z.clone(),
-    };
-    let recording = {
-        let _reading = Progress::endless("reading");
-        recording::read(file, &channels, args.samplerate)?
-    };
+    let recording = args.channels.read(file)?;
     let trend = Trend::of(&counts(file, &recording, tick_hz)?);
     let mut sampler = Sampler::new(&recording, tick_hz);
     let edges = EdgeConfig::new(tick_hz, sampler.timer_hz() as f64, &EdgeErrors::default())
@@ -78,7 +70,7 @@ pub(super) fn judge(
     }
     let map = map
         .as_ref()
-        .map(|map| MapFigures::new(map, tie, args.z.is_some()))
+        .map(|map| MapFigures::new(map, tie, args.channels.z.is_some()))
         .transpose()?;
     Ok((judges, map))
 }

@@ -2,7 +2,7 @@
 
 use leadscrew::setpoint::sources::Source;
 use leadscrew::setpoint::thread::{SpindleWay, ThreadOrder};
-use leadscrew_hal_mock::scenario::{Ask, Outer};
+use leadscrew_hal_mock::scenario::{Ask, Outer, Pulse};
 
 use super::{Spec, number, whole};
 use crate::scenario_file::words::{Key, Value};
@@ -61,6 +61,32 @@ const THREAD: &[Key] = &[
         name: "spindle",
         what: "way that the spindle turns",
         value: Value::Word(&["forward", "backward"]),
+        default: Some(0.0),
+    },
+];
+
+const PULSE: &[Key] = &[
+    number("level", "of full command", -1.0, 1.0, "command"),
+    number("length_s", "s", 0.001, 10.0, "for how long"),
+    number(
+        "rest_s",
+        "s",
+        0.0,
+        10.0,
+        "at zero command for so long after it",
+    )
+    .or(0.3),
+    number(
+        "window_mm",
+        "mm",
+        0.001,
+        1000.0,
+        "it ends early where the axis leaves so much to either side of where it began",
+    ),
+    Key {
+        name: "loop",
+        what: "\"open\": the command takes the place of the loop's; \"closed\": it is added to it",
+        value: Value::Word(&["open", "closed"]),
         default: Some(0.0),
     },
 ];
@@ -167,7 +193,7 @@ pub const ASKED: &[Spec] = &[
     ),
     Spec::ask(
         "engage",
-        "engages the gear to the second encoder",
+        "engages the gear to the second encoder, at the phase that comes of it",
         &[],
         |_| Ask::Engage(true),
     ),
@@ -185,6 +211,26 @@ pub const ASKED: &[Spec] = &[
             spindle: [SpindleWay::Forward, SpindleWay::Backward][values[8] as usize],
         })
     }),
+    Spec::ask(
+        "experiment",
+        "an experiment of identification: a step of the command, then zero; an open loop stays open until it is ended",
+        PULSE,
+        |values| {
+            Ask::Experiment(Pulse {
+                level: values[0],
+                length_s: values[1],
+                rest_s: values[2],
+                window_mm: values[3],
+                is_closed: values[4] == 1.0,
+            })
+        },
+    ),
+    Spec::ask(
+        "end-experiment",
+        "ends an experiment; the loop holds the axis where it stands",
+        &[],
+        |_| Ask::EndExperiment,
+    ),
     Spec::outer(
         "step-rate",
         "the outer control gives steps at this rate from now on",
