@@ -5,7 +5,7 @@ use leadscrew_hal_mock::scenario::{BANDWIDTH_RAD_PER_S, tuned_axis};
 
 use super::error::TrackingError;
 use super::figures::{CarriageRow, Judged};
-use super::ours::tuned_on;
+use super::kit::Kit;
 use super::scene::{Scene, TICK_HZ};
 use crate::parallel;
 use crate::screw::{BeforeAndAfter, ScrewCase, ScrewFailure};
@@ -23,7 +23,7 @@ const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
 const SEED: u64 = 1;
 
 /// Measures the screw by each drive.
-pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
+pub fn carriage(kit: &Kit) -> Result<Vec<CarriageRow>, TrackingError> {
     let [outside, ..] = Scene::with_backlash();
     let full = outside.nominal;
     let mut bare = Scene::bare().nominal;
@@ -38,7 +38,7 @@ pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
     )?;
     let cases = [
         ("bare drive, loop on the count", bare, counting),
-        ("full, autotuned", full, tuned_on(&full)?.0),
+        ("full, autotuned", full, kit.cold(&full, SEED)?.params),
     ];
     let done = parallel::map(&cases, |(name, machine, axis)| {
         let case = ScrewCase {

@@ -1,0 +1,90 @@
+//! Parameters for a simulated machine: from its drive as it is known, and from cold, by what identification finds.
+
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew::estimator::observer::{Config, ObserverParams};
+use leadscrew::identification::{Identified, IdentifyParams};
+use leadscrew::params::AxisParams;
+use leadscrew::tuning::DriveModel;
+use leadscrew::tuning::autotune::{AutotuneError, EstimatorChoice, Report, autotune};
+use leadscrew_hal_mock::machine::MachineParams;
+
+use super::error::TrackingError;
+use super::scene::TICK_HZ;
+use crate::commissioning::{counts_on, feed_within, has_disc, offer};
+use crate::identify::Bench;
+
+/// The figures of a simulated machine's drive, as a perfect identification would find them.
+#[must_use]
+pub fn model_of(machine: &MachineParams) -> DriveModel {
+    let drive = &machine.drive;
+    let breakaway = drive.friction_mm_per_min * drive.stiction_ratio;
+    DriveModel {
+        full_command_feed_mm_per_min: drive.full_command_feed_mm_per_min,
+        natural_period_s: drive.natural_period_s,
+        damping: drive.damping,
+        delay_s: drive.delay_s,
+        offset: drive.offset,
+        friction_forward_mm_per_min: drive.friction_mm_per_min,
+        friction_backward_mm_per_min: drive.friction_mm_per_min,
+        breakaway_forward_mm_per_min: breakaway,
+        breakaway_backward_mm_per_min: breakaway,
+        stribeck_mm_per_min: drive.stribeck_mm_per_min,
+        dead_time_s: drive.dead_time_s,
+        resolution: drive.resolution,
+        max_acceleration_m_s2: drive.max_acceleration_m_s2,
+    }
+}
+
+/// Our axis tuned on `machine` by [`autotune`], with an observer that counts on a learned map.
+///
+/// # Errors
+/// Nothing that autotune could offer.
+pub fn tuned_on(machine: &MachineParams) -> Result<(AxisParams, Report), AutotuneError> {
+    let observer = EstimatorConfig::Observer(Config::of_16k20f3()?);
+    let base = AxisParams {
+        timer_hz: machine.encoder.encoder.timer_hz,
+        ..AxisParams::new(observer)
+    };
+    let choice = EstimatorChoice::Observer(ObserverParams::default());
+    autotune(&model_of(machine), &base, &choice)
+}
+
+/// Largest feed that is asked for, mm/min; a slower drive gives less.
+const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
+/// Feed at full command as the drive's plate has it, mm/min: all that is known before a machine is identified.
+const PLATE_FEED_MM_PER_MIN: f64 = 9600.0;
+
+/// An axis that was commissioned from cold.
+#[derive(Clone, Copy, Debug)]
+pub struct Cold {
+    /// What was found of the drive.
+    pub identified: Identified,
+    /// What autotune made of it.
+    pub params: AxisParams,
+}
+
+/// Our axis from cold on `machine`, whose encoder `seed` draws: identified by the product's own experiments through the
+/// core, then tuned on what was found.
+///
+/// # Errors
+/// A machine that is not identified, or nothing that autotune could offer.
+pub fn tuned_from_cold(machine: &MachineParams, seed: u64) -> Result<Cold, TrackingError> {
+    let bench = Bench {
+        machine: *machine,
+        params: IdentifyParams::default(),
+        tick_hz: TICK_HZ,
+        nominal_feed_mm_per_min: PLATE_FEED_MM_PER_MIN,
+        reversed: false,
+        seed,
+    };
+    let identified = bench.run()?.identified;
+    let model = identified.model();
+    let max_feed = feed_within(&model, MAX_FEED_MM_PER_MIN);
+    let (params, _) = offer(
+        &bench,
+        &model,
+        max_feed,
+        &counts_on(machine, has_disc(machine)),
+    )?;
+    Ok(Cold { identified, params })
+}
