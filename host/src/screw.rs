@@ -9,6 +9,7 @@ use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::compensation::{
     CompensationParams, ScrewError, ScrewPoint, ScrewTable, Stretch, TableError, TableRefused,
 };
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::hal::Encoder;
 use leadscrew::params::{AxisParams, ParamError};
 use leadscrew::setpoint::profile::{Limits, PlanError, Profile};
@@ -18,17 +19,21 @@ use leadscrew_hal_mock::machine::{Machine, MachineParams};
 
 /// A screw to measure, on a machine with its axis.
 #[derive(Clone, Copy, Debug)]
-pub struct ScrewCase {
+pub struct ScrewCase<'m> {
     /// The machine.
     pub machine: MachineParams,
     /// The axis on it; compensation is set by what is measured.
     pub axis: AxisParams,
+    /// Map of its encoder.
+    pub map: Option<EncoderMap<'m>>,
     /// What draws the machine's errors.
     pub seed: u64,
     /// Travel to measure, from 0 on, mm.
     pub travel_mm: f64,
     /// Points of the table.
     pub points: usize,
+    /// Times that each point is measured from either side for the table; the mean counts, as in ISO 230-2.
+    pub runs: usize,
     /// Standing still before a reading, s.
     pub settle_s: f64,
 }
@@ -110,15 +115,17 @@ const READING_TICKS: u32 = 50;
 const GENTLE: f64 = 0.1;
 /// From where the first target is approached, d.
 const RUN_UP_D: f64 = 2000.0;
+/// Way over the index, d.
+const APPROACH_D: f64 = 12_000.0;
 
-impl ScrewCase {
+impl<'m> ScrewCase<'m> {
     /// Measures the screw, makes its table and measures it again.
     ///
     /// # Errors
     /// [`ScrewFailure`].
     pub fn run(&self) -> Result<BeforeAndAfter, ScrewFailure> {
         let targets = self.targets(self.points, 0.0);
-        let before = self.survey(CompensationParams::default(), None, &targets)?;
+        let before = self.survey(CompensationParams::default(), None, &targets, self.runs)?;
         let points = before.points();
         let mut memory = vec![Stretch::default(); points.len()];
         let table = ScrewTable::build(&points, &mut memory).map_err(ScrewFailure::Table)?;
@@ -135,8 +142,8 @@ impl ScrewCase {
         Ok(BeforeAndAfter {
             points: points.len(),
             before: before.figures(),
-            backlash: self.survey(with_backlash, None, &others)?.figures(),
-            after: self.survey(with_table, Some(table), &others)?.figures(),
+            backlash: self.survey(with_backlash, None, &others, 1)?.figures(),
+            after: self.survey(with_table, Some(table), &others, 1)?.figures(),
         })
     }
 
@@ -148,29 +155,38 @@ impl ScrewCase {
         (0..count.max(2)).map(place).collect()
     }
 
-    /// Readings at `targets`, which grow, with a compensation.
+    /// Readings at `targets`, which grow, with a compensation: the mean of so many runs there and back.
     ///
     /// # Errors
     /// [`ScrewFailure`].
-    pub fn survey(
+    pub fn survey<'t>(
         &self,
         compensation: CompensationParams,
-        table: Option<ScrewTable<'_>>,
+        table: Option<ScrewTable<'t>>,
         targets: &[f64],
-    ) -> Result<Survey, ScrewFailure> {
+        runs: usize,
+    ) -> Result<Survey, ScrewFailure>
+    where
+        'm: 't,
+    {
         let mut bench = Bench::new(self, compensation, table)?;
-        let mut survey = Survey::default();
+        let mut survey = Survey {
+            readings: targets.iter().map(|place| (*place, [0.0; 2])).collect(),
+            standing: 0.0,
+        };
         let (Some(first), Some(last)) = (targets.first(), targets.last()) else {
             return Ok(survey);
         };
-        bench.go_to(first - RUN_UP_D)?;
-        for target in targets {
-            let error = bench.read_at(*target, &mut survey.standing)?;
-            survey.readings.push((*target, [error, 0.0]));
-        }
-        bench.go_to(last + RUN_UP_D)?;
-        for (target, [_, backward]) in survey.readings.iter_mut().rev() {
-            *backward = bench.read_at(*target, &mut survey.standing)?;
+        let share = 1.0 / runs.max(1) as f64;
+        for _ in 0..runs.max(1) {
+            bench.go_to(first - RUN_UP_D)?;
+            for (target, [forward, _]) in &mut survey.readings {
+                *forward += share * bench.read_at(*target, &mut survey.standing)?;
+            }
+            bench.go_to(last + RUN_UP_D)?;
+            for (target, [_, backward]) in survey.readings.iter_mut().rev() {
+                *backward += share * bench.read_at(*target, &mut survey.standing)?;
+            }
         }
         Ok(survey)
     }
@@ -210,11 +226,27 @@ struct Bench<'m> {
     outputs: Outputs,
     limits: Limits,
     settle_ticks: u32,
+    /// Where the axis has the shaft's zero, d: there the laser is set to zero.
+    zero: f64,
 }
 
 impl<'m> Bench<'m> {
     fn new(
-        case: &ScrewCase,
+        case: &ScrewCase<'m>,
+        compensation: CompensationParams,
+        table: Option<ScrewTable<'m>>,
+    ) -> Result<Self, ScrewFailure> {
+        // Before there is any compensation.
+        let mut plain = Self::at_rest(case, CompensationParams::default(), None)?;
+        let zero = plain.home()?;
+        let mut bench = Self::at_rest(case, compensation, table)?;
+        bench.home()?;
+        bench.zero = zero;
+        Ok(bench)
+    }
+
+    fn at_rest(
+        case: &ScrewCase<'m>,
         compensation: CompensationParams,
         table: Option<ScrewTable<'m>>,
     ) -> Result<Self, ScrewFailure> {
@@ -223,6 +255,7 @@ impl<'m> Bench<'m> {
             ..case.axis
         };
         let mut axis = Axis::new(params.validate()?);
+        axis.set_map(case.map);
         if table.is_some() {
             axis.set_screw_table(table).map_err(ScrewFailure::Refused)?;
         }
@@ -239,9 +272,24 @@ impl<'m> Bench<'m> {
             outputs: Outputs::default(),
             limits,
             settle_ticks: (case.settle_s * params.tick_hz) as u32,
+            zero: 0.0,
         };
         bench.stand(bench.settle_ticks);
         Ok(bench)
+    }
+
+    /// Over the index and back, so that the map is in use; on the way back the mean of where the axis has the shaft less
+    /// where it is.
+    fn home(&mut self) -> Result<f64, ScrewFailure> {
+        self.go_to(APPROACH_D)?;
+        let profile = self.move_to(0.0)?;
+        let mut sum = 0.0;
+        for _ in 0..profile {
+            self.step();
+            sum += self.outputs.reported.to_num::<f64>() - self.machine.truth().shaft.position;
+        }
+        self.stand(self.settle_ticks);
+        Ok(sum / f64::from(profile))
     }
 
     fn step(&mut self) {
@@ -258,6 +306,13 @@ impl<'m> Bench<'m> {
 
     /// Moves to a place, d from the origin, and waits for rest.
     fn go_to(&mut self, place: f64) -> Result<(), ScrewFailure> {
+        let ticks = self.move_to(place)?;
+        self.stand(ticks + self.settle_ticks);
+        Ok(())
+    }
+
+    /// Starts a move to a place; its ticks.
+    fn move_to(&mut self, place: f64) -> Result<u32, ScrewFailure> {
         let behind = Position::from_bits(i64::from(self.outputs.following_error.to_bits()));
         let commanded = self.outputs.reported + behind;
         let distance = Position::saturating_from_num(place) - commanded;
@@ -266,8 +321,7 @@ impl<'m> Bench<'m> {
         self.axis
             .queue(&profile, start)
             .map_err(ScrewFailure::Queue)?;
-        self.stand(profile.ticks() + self.settle_ticks);
-        Ok(())
+        Ok(profile.ticks())
     }
 
     /// Carriage less place at rest at `place`.
@@ -277,7 +331,7 @@ impl<'m> Bench<'m> {
         for _ in 0..READING_TICKS {
             self.step();
             let carriage = self.machine.truth().carriage.position;
-            sum += carriage - self.outputs.reported.to_num::<f64>();
+            sum += carriage + self.zero - self.outputs.reported.to_num::<f64>();
             let behind: f64 = self.outputs.following_error.to_num();
             *standing = standing.max(behind.abs());
         }
