@@ -1,5 +1,6 @@
 //! Commissioning a simulated machine from cold, as its user would: learn the encoder, identify the drive, autotune.
 
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{Config, ObserverParams};
 use leadscrew::params::{AxisParams, MAX_FEED_SHARE, MotionParams};
@@ -25,6 +26,12 @@ pub fn has_disc(machine: &MachineParams) -> bool {
 pub fn learned(machine: &MachineParams, seed: u64) -> Option<Vec<u8>> {
     let learn = || learn_simulated(&machine.encoder, seed, &Procedure::default()).ok();
     has_disc(machine).then(learn).flatten()
+}
+
+/// The map of an image that was learned here.
+#[must_use]
+pub fn map_of(image: Option<&[u8]>) -> Option<EncoderMap<'_>> {
+    image.and_then(|image| EncoderMap::from_bytes(image).ok())
 }
 
 /// What the observer counts on: edges without errors where there is a map or nothing to learn, else those of the encoder.

@@ -3,10 +3,10 @@
 use super::drive::{Drive, Vector};
 use super::recorder::Records;
 
-/// Travel that shows that a ramp broke the axis away, d.
-const BROKE_AWAY_D: f64 = 3.0;
-/// The same as the shaft goes: it stands anywhere within its first count, so that whole counts are half a d early in the mean.
-const BROKE_AWAY_IN_THE_MEAN_D: f64 = BROKE_AWAY_D - 0.5;
+/// Travel that shows that a ramp broke the axis away, d: three counts, and what a map may take off them.
+const BROKE_AWAY_D: f64 = 2.75;
+/// The same as the shaft goes: it stands anywhere within its first count, so that three counts are this in the mean.
+const BROKE_AWAY_IN_THE_MEAN_D: f64 = 2.5;
 
 /// A ramp that broke the axis away.
 #[derive(Clone, Copy, Debug)]

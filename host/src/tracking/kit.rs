@@ -39,21 +39,23 @@ impl Kit {
                 jobs.extend(SEEDS.map(|seed| (scene, seed)));
             }
         }
+        let mut kit = Self {
+            maps: learned.into_iter().collect::<Result<_, _>>()?,
+            commissioned: Vec::new(),
+        };
         let commissioned = parallel::map(&jobs, |(scene, seed)| {
-            let done = tuned_from_cold(&scene.nominal, *seed);
-            let cold = done.map_err(|error| on_scene(scene, *seed, error))?;
+            let map = kit.map(&scene.nominal, *seed)?;
+            let done = tuned_from_cold(&scene.nominal, map, *seed);
             Ok(Commissioned {
                 machine: scene.nominal,
                 seed: *seed,
-                cold,
+                cold: done.map_err(|error| on_scene(scene, *seed, error))?,
             })
         });
-        Ok(Self {
-            maps: learned.into_iter().collect::<Result<_, _>>()?,
-            commissioned: commissioned
-                .into_iter()
-                .collect::<Result<_, TrackingError>>()?,
-        })
+        kit.commissioned = commissioned
+            .into_iter()
+            .collect::<Result<_, TrackingError>>()?;
+        Ok(kit)
     }
 
     /// What was commissioned on `machine` with the encoder `seed`.

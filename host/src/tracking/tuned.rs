@@ -1,5 +1,6 @@
 //! Parameters for a simulated machine: from its drive as it is known, and from cold, by what identification finds.
 
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{Config, ObserverParams};
 use leadscrew::identification::{Identified, IdentifyParams};
@@ -10,7 +11,7 @@ use leadscrew_hal_mock::machine::MachineParams;
 
 use super::error::TrackingError;
 use super::scene::TICK_HZ;
-use crate::commissioning::{counts_on, feed_within, has_disc, offer};
+use crate::commissioning::{counts_on, feed_within, offer};
 use crate::identify::Bench;
 
 /// The figures of a simulated machine's drive, as a perfect identification would find them.
@@ -63,12 +64,16 @@ pub struct Cold {
     pub params: AxisParams,
 }
 
-/// Our axis from cold on `machine`, whose encoder `seed` draws: identified by the product's own experiments through the
+/// Our axis from cold on `machine`, whose encoder `seed` draws and `map` corrects: identified by the product's own experiments through the
 /// core, then tuned on what was found.
 ///
 /// # Errors
 /// A machine that is not identified, or nothing that autotune could offer.
-pub fn tuned_from_cold(machine: &MachineParams, seed: u64) -> Result<Cold, TrackingError> {
+pub fn tuned_from_cold(
+    machine: &MachineParams,
+    map: Option<EncoderMap<'_>>,
+    seed: u64,
+) -> Result<Cold, TrackingError> {
     let bench = Bench {
         machine: *machine,
         params: IdentifyParams::default(),
@@ -77,14 +82,9 @@ pub fn tuned_from_cold(machine: &MachineParams, seed: u64) -> Result<Cold, Track
         reversed: false,
         seed,
     };
-    let identified = bench.run()?.identified;
+    let identified = bench.run(map)?.identified;
     let model = identified.model();
     let max_feed = feed_within(&model, MAX_FEED_MM_PER_MIN);
-    let (params, _) = offer(
-        &bench,
-        &model,
-        max_feed,
-        &counts_on(machine, has_disc(machine)),
-    )?;
+    let (params, _) = offer(&bench, &model, max_feed, &counts_on(machine, map.is_some()))?;
     Ok(Cold { identified, params })
 }

@@ -17,7 +17,7 @@ use super::identify::{bench, identify};
 use super::{check_replaceable, print, print_json, write_file};
 use crate::axis_file::{self, AxisFile};
 use crate::cli::AutotuneArgs;
-use crate::commissioning::{counts_on, feed_within, learned, offer};
+use crate::commissioning::{counts_on, feed_within, learned, map_of, offer};
 use crate::error::CommandError;
 use crate::identify::Bench;
 use crate::progress::Progress;
@@ -55,10 +55,12 @@ pub fn run(args: &AutotuneArgs) -> Result<(), CommandError> {
         .transpose()
         .map_err(|error| CommandError::Usage(format!("{error} mm/min")))?;
     let bench = bench(&args.bench)?;
-    let found = identify(&args.bench, &bench)?;
+    let image = learned(&bench.machine, bench.seed);
+    let map = map_of(image.as_deref());
+    let found = identify(&args.bench, &bench, map)?;
     let model = found.identified.model();
     let max_feed = asked.unwrap_or_else(|| feed_within(&model, MAX_FEED_MM_PER_MIN));
-    let tuned = tune(args, &bench, max_feed, &model)?;
+    let tuned = tune(args, &bench, max_feed, &model, map)?;
     if let Some(path) = &args.out {
         let text = axis_file::dump(&tuned.file);
         write_file(path, |file| file.write_all(text.as_bytes()))?;
@@ -76,13 +78,10 @@ fn tune(
     bench: &Bench,
     max_feed: f64,
     model: &DriveModel,
+    map: Option<EncoderMap<'_>>,
 ) -> Result<Tuned, CommandError> {
     let _tuning = Progress::endless("tuning");
     let machine = &bench.machine;
-    let image = learned(machine, bench.seed);
-    let map = image
-        .as_deref()
-        .and_then(|image| EncoderMap::from_bytes(image).ok());
     let counts_on = counts_on(machine, map.is_some());
     let refused = |error: AutotuneError| match error {
         AutotuneError::Param(error @ ParamError::FeedTooHigh { .. }) => {
