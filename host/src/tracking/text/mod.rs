@@ -16,7 +16,7 @@ profile's end to 1 s. Rest: the shaft, peak to peak, over 10 s after the last mo
 round by more than 0.5 % of full command in them (20 and more: it oscillates). All in d = 0.001 mm; ok or NO beside a
 limit.
 Each axis is commissioned from cold on its nominal machine with the encoder that it then runs with: the drive identified by
-the product's own experiments, the parameters by autotune from what was found. Off nominal: run on another machine.
+the product's own experiments by the learned map, the parameters by autotune from that. Off nominal: run on another machine.
 ";
 
 const KNOWN_LEGEND: &str = "\
@@ -48,13 +48,14 @@ Creep of 0.0167 d/tick, 18 s: largest error to the line after the first second, 
 ";
 
 const CARRIAGE_LEGEND: &str = "\
-The carriage over 300 mm as a laser sees it, 3 d of backlash outside the loop, seed 1, no map: largest errors before and after
-compensation by a table of 256 points both ways, at targets between them; backlash: mean reversal with the backlash as a
-parameter alone; standing: what the servo leaves at rest.
+The carriage over 300 mm as a laser sees it, 3 d of backlash outside the loop, seed 1: largest errors before and after
+compensation by a table of 256 points both ways (mean of three runs), at targets between them; backlash: mean reversal with
+the backlash as a parameter alone; standing: what the servo leaves at rest. The bare drive goes without a map.
 ";
 
 const THREADS_LEGEND: &str = "\
-Threads of 2 mm, spindle of 1 024 lines with ripple and a drop of speed at the cut; encoders \"real\" (seed 1), no map.
+Threads of 2 mm, spindle of 1 024 lines with ripple and a drop of speed at the cut; encoders \"real\" (seed 1), that of the
+axis with its learned map, which shifts all phases alike: its zero is that of the disc.
 Phase: mean over the full-depth part of 360 x/P - (theta - theta0); error: largest deviation from it at any instant, d.
 ";
 
