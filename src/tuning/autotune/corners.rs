@@ -86,5 +86,15 @@ pub fn trials(model: &DriveModel, params: &AxisParams) -> Result<(Trial, Trial),
     if worst.swing_d > MOST_UNREST_D {
         return Err(AutotuneError::Trial(worst));
     }
+    let supervisor = &params.supervisor;
+    let warned_from_mm = supervisor.following_error_mm * supervisor.following_warning_share;
+    let warned_from_d = warned_from_mm * params.motion.counts_per_mm;
+    if worst.peak_d > warned_from_d {
+        return Err(AutotuneError::Behind {
+            peak_d: worst.peak_d,
+            warned_from_d,
+            drive_m_s2: model.max_acceleration_m_s2,
+        });
+    }
     Ok((own, worst))
 }

@@ -16,6 +16,15 @@ pub enum AutotuneError {
     NoMargin(Margins),
     /// The trial on the model does not come to rest or oscillates.
     Trial(Trial),
+    /// The trial on the model, or on a corner, follows so far behind that the supervisor would warn.
+    Behind {
+        /// Largest following error, d.
+        peak_d: f64,
+        /// From where on the supervisor warns of an axis at rest, d.
+        warned_from_d: f64,
+        /// What the drive accelerates by, m/s².
+        drive_m_s2: f64,
+    },
 }
 
 impl<E: Into<ParamError>> From<E> for AutotuneError {
@@ -36,8 +45,18 @@ impl fmt::Display for AutotuneError {
             ),
             Self::Trial(trial) => write!(
                 f,
-                "the loop does not settle on the model: {:.1} d at rest, swinging by {:.1} d; identify the drive again",
+                "the loop does not settle on the model: {:.1} d at rest, swinging by {:.1} d; look for coarse steps of command, \
+                 dead time or stiction in the drive, or identify it again",
                 trial.standing_d, trial.swing_d
+            ),
+            Self::Behind {
+                peak_d,
+                warned_from_d,
+                drive_m_s2,
+            } => write!(
+                f,
+                "the axis would be {peak_d:.0} d behind on the model, and the supervisor warns from {warned_from_d:.0} d on: ask \
+                 for less feed or acceleration (the drive gives {drive_m_s2:.2} m/s² at most), or identify it again"
             ),
         }
     }

@@ -61,7 +61,9 @@ pub fn best(model: &DriveModel, prepared: &AxisParams) -> Result<Chosen, Autotun
                 }
             }
             // What a trial says is of more use than that another damping has no margin.
-            Err(error @ AutotuneError::Trial(_)) => refused = Some(error),
+            Err(error @ (AutotuneError::Trial(_) | AutotuneError::Behind { .. })) => {
+                refused = Some(error)
+            }
             Err(error @ AutotuneError::NoMargin(_)) => refused = refused.or(Some(error)),
             Err(error) => return Err(error),
         }
