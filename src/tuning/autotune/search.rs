@@ -62,7 +62,7 @@ pub fn best(model: &DriveModel, prepared: &AxisParams) -> Result<Chosen, Autotun
             }
             // What a trial says is of more use than that another damping has no margin.
             Err(error @ (AutotuneError::Trial(_) | AutotuneError::Behind { .. })) => {
-                refused = Some(error)
+                refused = Some(error);
             }
             Err(error @ AutotuneError::NoMargin(_)) => refused = refused.or(Some(error)),
             Err(error) => return Err(error),
@@ -135,7 +135,7 @@ fn fastest(model: &DriveModel, prepared: &AxisParams, damping: f64) -> Result<f6
         Ok(suffice(&worst, LEAST_GAIN_DB, LEAST_PHASE_DEG))
     };
     let found = largest(natural_frequency(model), &mut keeps)?;
-    found.ok_or_else(|| AutotuneError::NoMargin(slowest))
+    found.ok_or(AutotuneError::NoMargin(slowest))
 }
 
 /// The largest radius, within [`RADII`] of `omega`, that `keeps` what is asked for, if there is one: from the fastest down by steps, then by halving the
