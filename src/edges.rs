@@ -232,6 +232,16 @@ impl<'m> EdgeReader<'m> {
         }
     }
 
+    /// Errors of the boundary that was passed last in the tick last [noted](Self::note), Q.16 d, for a motion forward and one
+    /// backward; none without a map tied to the index.
+    #[must_use]
+    pub fn last_errors(&self) -> Option<[i32; 2]> {
+        let tie = self.tie.as_ref()?;
+        let errors = || [(0, Direction::Forward), (1, Direction::Backward)];
+        (tie.state() == MapState::Tied)
+            .then(|| errors().map(|(ahead, direction)| tie.error(ahead, direction)))
+    }
+
     /// Error of the boundary at which the index of the tick last [noted](Self::note) was latched, Q.16 d; 0 without an
     /// index or a map tied to it.
     #[must_use]

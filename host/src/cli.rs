@@ -73,14 +73,10 @@ pub struct AutotuneArgs {
     /// The machine, and within what it may be moved
     #[command(flatten)]
     pub bench: BenchArgs,
-    /// Largest feed of the axis, mm/min, at most 95 % of what is identified at full command
-    #[arg(
-        long,
-        value_name = "MM_PER_MIN",
-        default_value_t = 9000.0,
-        allow_negative_numbers = true
-    )]
-    pub max_feed: f64,
+    /// Largest feed of the axis, mm/min, at most 95 % of what is identified at full command; without it 9000, or what
+    /// the drive gives if that is less
+    #[arg(long, value_name = "MM_PER_MIN", allow_negative_numbers = true)]
+    pub max_feed: Option<f64>,
     /// Write the parameters that are offered to FILE; without it they are only shown
     #[arg(long, value_name = "FILE.toml")]
     pub out: Option<PathBuf>,

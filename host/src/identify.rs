@@ -1,6 +1,7 @@
 //! Identification of a simulated machine through the real core of the axis.
 
 use leadscrew::axis::{Axis, Inputs};
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::{EstimatorConfig, difference};
 use leadscrew::hal::Encoder;
 use leadscrew::identification::{Identification, Identified, IdentifyParams, Refusal};
@@ -91,13 +92,14 @@ impl Bench {
         })
     }
 
-    /// Runs the experiments.
+    /// Runs the experiments on an axis with a `map` of its encoder.
     ///
     /// # Errors
     /// [`IdentifyError`].
-    pub fn run(&self) -> Result<Found, IdentifyError> {
+    pub fn run(&self, map: Option<EncoderMap<'_>>) -> Result<Found, IdentifyError> {
         let params = self.axis_params()?;
         let mut axis = Axis::new(params.validate()?);
+        axis.set_map(map);
         let mut machine =
             Machine::new(&self.machine, self.tick_hz, self.seed).map_err(ParamError::from)?;
         let scale = AxisScale::new(self.machine.mount.counts_per_mm, self.tick_hz)

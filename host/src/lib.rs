@@ -7,6 +7,7 @@ pub mod calibration;
 pub mod cli;
 pub mod closed_loop;
 pub mod command;
+pub mod commissioning;
 pub mod error;
 pub mod fault_names;
 pub mod fault_page;

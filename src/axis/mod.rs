@@ -146,6 +146,7 @@ impl<'m> Axis<'m> {
         if is_experiment && let Some(experiment) = &mut self.experiment {
             demand.command = experiment.step(&Seen {
                 observation: &observation,
+                errors: self.edges.last_errors(),
                 permit,
                 demand: demand.command,
                 in_force: self.output.command(),

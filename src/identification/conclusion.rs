@@ -15,6 +15,13 @@ const DEAD_TIMES: [f64; 4] = [0.0, 0.03, 0.06, 0.15];
 const LIMIT_SHARES: [f64; 7] = [0.95, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2];
 /// A limit of acceleration must explain that share of the squares that are left without it.
 const LIMIT_EXPLAINS: f64 = 0.05;
+/// Most often that what breaks the axis away is judged anew, and the share by which it may still change at the end.
+const ROUNDS: usize = 3;
+const STAYS: f64 = 0.005;
+/// Uncertainty of the period up to which it is well known.
+const SURE_OF_PERIOD: f64 = 0.005;
+/// Where else to begin if it is not: ln ω and delay (records) beside the fit's.
+const AROUND: [(f64, f64); 4] = [(-0.7, -1.5), (-0.25, 0.0), (0.1, 0.5), (0.35, 0.0)];
 /// Steps of command of common drives, of full command: what a ramp cannot tell apart.
 const COMMAND_STEP: f64 = 1e-4;
 /// Ticks by which the moment of breaking away is uncertain.
@@ -44,13 +51,48 @@ impl Evidence<'_> {
         let Some(stuck) = stuck else {
             return Some((free?, None));
         };
+        let stuck = self.looked_around(stuck, Some(held));
         if free.is_some_and(|free| free.cost < stuck.cost) {
             return Some((free?, None));
         }
-        // What breaks the axis away was judged by a rougher model.
-        let held = self.held(&stuck.vector);
-        let fit = self.problem(&stuck.vector, held).solve(&stuck.vector)?;
-        Some((fit, held))
+        // What breaks the axis away was judged by a rougher model: by the better one anew, until it stays.
+        let (mut fit, mut held) = (stuck, Some(held));
+        for _ in 0..ROUNDS {
+            let anew = self.held(&fit.vector);
+            let Some(better) = self.problem(&fit.vector, anew).solve(&fit.vector) else {
+                break;
+            };
+            let is_same = stays(held, anew);
+            (fit, held) = (better, anew);
+            if is_same {
+                break;
+            }
+        }
+        Some((self.looked_around(fit, held), held))
+    }
+
+    /// A fit that does not know the period well may sit in a valley beside the right one: others are begun to either side.
+    fn looked_around(&self, fit: Fit, held: Option<[f64; 2]>) -> Fit {
+        let spread = fit.covariance.at(place::LN_OMEGA, place::LN_OMEGA);
+        let mut best = fit;
+        if libm::sqrt(spread) > SURE_OF_PERIOD {
+            for (away, delay) in AROUND {
+                let mut start = fit.vector;
+                set(&mut start, place::LN_OMEGA, |value| value + away);
+                set(&mut start, place::DELAY, |value| (value + delay).max(0.0));
+                set(&mut start, place::LN_DAMPING, |value| {
+                    value.clamp(-1.2, 0.3)
+                });
+                let friction = part(&start, place::FRICTION).max(1e-3 * part(&start, place::GAIN));
+                set(&mut start, place::LN_STRIBECK, |_| libm::log(friction));
+                if let Some(other) = self.solved(&start, held)
+                    && other.cost < best.cost
+                {
+                    best = other;
+                }
+            }
+        }
+        best
     }
 
     /// The better of a drive with a limit of acceleration and one without.
@@ -178,6 +220,15 @@ impl Evidence<'_> {
             proof_level,
         }
     }
+}
+
+/// Static friction of two models is the same.
+fn stays(before: Option<[f64; 2]>, after: Option<[f64; 2]>) -> bool {
+    let (Some([forward, backward]), Some([ahead, behind])) = (before, after) else {
+        return true;
+    };
+    let same = |one: f64, other: f64| libm::fabs(one - other) <= STAYS * other;
+    same(forward, ahead) && same(backward, behind)
 }
 
 /// A weighted sum of gain, drift and friction, a tick.

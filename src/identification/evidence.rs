@@ -3,8 +3,11 @@
 use super::drive::{Drive, Vector};
 use super::recorder::Records;
 
-/// Travel that shows that a ramp broke the axis away, d.
-const BROKE_AWAY_D: f64 = 3.0;
+/// Travel that shows that a ramp broke the axis away, d: three counts, and what a map may take off them.
+const BROKE_AWAY_D: f64 = 2.75;
+/// The same as the shaft goes: it stands anywhere within its first count, so that three counts are this in the mean.
+const BROKE_AWAY_IN_THE_MEAN_D: f64 = 2.5;
+
 /// A ramp that broke the axis away.
 #[derive(Clone, Copy, Debug)]
 pub struct Broke {
@@ -65,7 +68,7 @@ pub fn broken_away_after(vector: &Vector, held: f64, slope: f64, most: u32) -> u
     let ramp = |tick: isize| slope * tick.saturating_add(1).max(0) as f64;
     for tick in 0..most {
         drive.step(ramp, tick as isize);
-        if libm::fabs(drive.travel) >= BROKE_AWAY_D {
+        if libm::fabs(drive.travel) >= BROKE_AWAY_IN_THE_MEAN_D {
             return tick.wrapping_add(1);
         }
     }

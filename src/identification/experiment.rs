@@ -34,6 +34,9 @@ pub const POSITION_FRAC: u32 = 4;
 pub struct Seen<'a> {
     /// What the encoder inputs saw.
     pub observation: &'a Observation<'a>,
+    /// Errors of the boundary passed last by the encoder map, Q.16 d, had it been passed forward and backward; none
+    /// without a map in use.
+    pub errors: Option<[i32; 2]>,
     /// What was permitted before the loop.
     pub permit: Permit,
     /// What the controller asks for.
@@ -56,6 +59,10 @@ pub struct Experiment {
     /// Centre of the window, once the first tick has set it.
     centre: Option<i64>,
     position: i64,
+    /// The encoder map was in use when it began: it is until the end then, as a change would look like motion.
+    is_mapped: bool,
+    /// The last motion was backward.
+    is_backward: bool,
     in_force: Command,
     ending: Option<Ending>,
     abort: bool,
@@ -73,6 +80,8 @@ impl Experiment {
             ticks: 0,
             segment_count: 0,
             position: 0,
+            is_mapped: false,
+            is_backward: false,
             in_force: Command::ZERO,
             ending: None,
             abort: false,
@@ -102,7 +111,8 @@ impl Experiment {
         self.ticks
     }
 
-    /// Position at the last sample in 1/16 d, by the age of the last edge where it is known.
+    /// Position at the last sample in 1/16 d, by the age of the last edge where it is known, and by its place on the
+    /// encoder map where that was in use from the beginning.
     #[must_use]
     pub const fn position(&self) -> i64 {
         self.position
@@ -125,7 +135,7 @@ impl Experiment {
     #[inline(never)]
     pub fn step(&mut self, seen: &Seen<'_>) -> Command {
         let observation = seen.observation;
-        self.position = sub_count(observation);
+        self.position = sub_count(observation).wrapping_add(self.correction(seen));
         self.in_force = seen.in_force;
         if self.ending.is_none() {
             self.ending = self.trouble(seen);
@@ -156,6 +166,22 @@ impl Experiment {
         if permit < Permit::Follow && self.ending.is_none() {
             self.ending = Some(Ending::NotPermitted);
         }
+    }
+
+    /// What the encoder map says of the last edge, 1/16 d.
+    fn correction(&mut self, seen: &Seen<'_>) -> i64 {
+        if self.ticks == 0 {
+            self.is_mapped = seen.errors.is_some();
+        }
+        let delta = seen.observation.delta;
+        if delta != 0 {
+            self.is_backward = delta < 0;
+        }
+        let Some([forward, backward]) = seen.errors.filter(|_| self.is_mapped) else {
+            return 0;
+        };
+        let error = if self.is_backward { backward } else { forward };
+        i64::from(error).wrapping_shr(16_u32.wrapping_sub(POSITION_FRAC))
     }
 
     /// What ends the experiment in this tick.

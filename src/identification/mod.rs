@@ -26,8 +26,10 @@ pub mod program;
 pub mod recorder;
 mod refusal;
 mod seed;
+mod stages;
 
 pub use identified::{Figure, Identified, LargestAcceleration};
 pub use plan::IdentifyParams;
-pub use procedure::{Identification, Next, Stage};
+pub use procedure::{Identification, Next};
 pub use refusal::Refusal;
+pub use stages::Stage;

@@ -214,9 +214,10 @@ impl Plan {
         let (go, rest) = (main.whole(main.go), main.whole(main.rest));
         let stop = main.brake_d_per_level;
         let segments = match number {
-            0 => shuttle(&goals(small), offset_d, stop, go, rest),
+            // The fastest first: it passes the index, from which on an encoder map helps the slow ones, which need it more.
+            0 => shuttle(&goals(large), offset_d, stop, go, rest),
             1 => shuttle(&goals(middle), offset_d, stop, go, rest),
-            2 => shuttle(&goals(large), offset_d, stop, go, rest),
+            2 => shuttle(&goals(small), offset_d, stop, go, rest),
             3 => {
                 // No rest between: the reversals are the largest changes of speed.
                 let travel = |to: f64, from: f64| libm::fabs(to - from).max(1.0) as u32;

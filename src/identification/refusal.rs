@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::experiment::Ending;
-use super::procedure::Stage;
+use super::stages::Stage;
 use crate::axis::StartError;
 use crate::units::RangeError;
 

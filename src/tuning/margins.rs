@@ -40,7 +40,7 @@ pub struct Margins {
 
 impl Margins {
     /// No limit at all.
-    const WIDEST: Self = Self {
+    pub const WIDEST: Self = Self {
         gain_db: f64::INFINITY,
         reserve_db: f64::INFINITY,
         phase_deg: 180.0,

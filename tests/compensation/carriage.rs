@@ -19,7 +19,9 @@ fn measured(backlash_mm: f64, points: usize) -> BeforeAndAfter {
     let case = ScrewCase {
         machine,
         axis,
+        map: None,
         seed: 1,
+        runs: 1,
         travel_mm: 300.0,
         points,
         settle_s: 0.6,

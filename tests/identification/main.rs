@@ -2,5 +2,6 @@
 
 mod coverage;
 mod figures;
+mod mapped;
 mod refusals;
 mod support;

@@ -10,7 +10,7 @@ use leadscrew_host::threads::{Lathe, ThreadError};
 
 const COUNTS_PER_MM: f64 = 1000.0;
 
-pub fn lathe(rpm: f64) -> Lathe {
+pub fn lathe(rpm: f64) -> Lathe<'static> {
     let machine = MachineParams::z_16k20f3().bare();
     let spindle = SpindleParams {
         rpm,

@@ -2,4 +2,5 @@
 
 mod margins;
 mod offers;
+mod refusals;
 mod tracking;

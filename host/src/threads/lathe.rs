@@ -1,6 +1,7 @@
 //! A lathe that cuts threads: axis, machine and spindle, tick by tick.
 
 use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::{EstimatorConfig, observer};
 use leadscrew::hal::{Encoder as _, Lines, Reference};
 use leadscrew::params::AxisParams;
@@ -21,9 +22,9 @@ pub(super) const PATIENCE: u32 = 200_000;
 
 /// A lathe: an axis on its machine, and a spindle.
 #[derive(Clone, Debug)]
-pub struct Lathe {
+pub struct Lathe<'m> {
     /// The axis.
-    pub axis: Axis<'static>,
+    pub axis: Axis<'m>,
     /// Its machine.
     pub machine: Machine,
     /// The spindle.
@@ -33,7 +34,7 @@ pub struct Lathe {
     outputs: Outputs,
 }
 
-impl Lathe {
+impl<'m> Lathe<'m> {
     /// A lathe at rest, its spindle turning at `rpm`, with the encoders that `seed` draws and the loop's poles at
     /// `bandwidth_rad_per_s` on the drive's nominal figures, with the observer in the loop.
     ///
@@ -47,9 +48,27 @@ impl Lathe {
         seed: u64,
     ) -> Result<Self, ThreadError> {
         let params = axis_params(machine, bandwidth_rad_per_s)?;
+        Self::with(&params, None, machine, spindle, spindle_encoder, seed)
+    }
+
+    /// A lathe at rest, its spindle turning at `rpm`, with the encoders that `seed` draws and an axis of `params` with a map
+    /// of its encoder.
+    ///
+    /// # Errors
+    /// A parameter out of range.
+    pub fn with(
+        params: &AxisParams,
+        map: Option<EncoderMap<'m>>,
+        machine: &MachineParams,
+        spindle: &SpindleParams,
+        spindle_encoder: EncoderModel,
+        seed: u64,
+    ) -> Result<Self, ThreadError> {
+        let mut axis = Axis::new(params.validate()?);
+        axis.set_map(map);
         let encoder = encoder_1024(spindle_encoder);
         Ok(Self {
-            axis: Axis::new(params.validate()?),
+            axis,
             machine: Machine::new(machine, TICK_HZ, seed)?,
             spindle: Spindle::new(spindle, &encoder, TICK_HZ, seed ^ 0x51)?,
             lines: Lines::default(),

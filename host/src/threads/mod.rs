@@ -45,7 +45,8 @@ pub struct ThreadTable {
 }
 
 impl ThreadTable {
-    /// Cuts the thread of 2 mm, `passes` times at each of [`SPEEDS_RPM`].
+    /// Cuts the thread of 2 mm, `passes` times at each of [`SPEEDS_RPM`], by a loop with its poles at
+    /// `bandwidth_rad_per_s` on the drive's nominal figures, and no map.
     ///
     /// # Errors
     /// A refusal, or a pass that did not come to its end.
@@ -56,22 +57,29 @@ impl ThreadTable {
         passes: u32,
         seed: u64,
     ) -> Result<Self, ThreadError> {
+        Self::cut_by(machine.mount.counts_per_mm, passes, |spindle| {
+            Lathe::new(machine, spindle, spindle_encoder, bandwidth_rad_per_s, seed)
+        })
+    }
+
+    /// The same by a lathe of each spindle, on an axis with so many counts/mm.
+    ///
+    /// # Errors
+    /// As [`Self::cut`].
+    pub fn cut_by<'m>(
+        counts_per_mm: f64,
+        passes: u32,
+        lathe: impl Fn(&SpindleParams) -> Result<Lathe<'m>, ThreadError>,
+    ) -> Result<Self, ThreadError> {
         let mut rows = Vec::new();
         for rpm in SPEEDS_RPM {
-            let spindle = SpindleParams {
+            let mut lathe = lathe(&SpindleParams {
                 rpm,
                 ..SpindleParams::default()
-            };
-            let mut lathe = Lathe::new(
-                machine,
-                &spindle,
-                spindle_encoder,
-                bandwidth_rad_per_s,
-                seed,
-            )?;
+            })?;
             lathe.run(1500);
             for pass in 1..=passes {
-                let cut = lathe.cut(&standard_order(), machine.mount.counts_per_mm)?;
+                let cut = lathe.cut(&standard_order(), counts_per_mm)?;
                 rows.push(ThreadRow {
                     rpm,
                     pass,

@@ -5,7 +5,7 @@ use leadscrew_hal_mock::scenario::{BANDWIDTH_RAD_PER_S, tuned_axis};
 
 use super::error::TrackingError;
 use super::figures::{CarriageRow, Judged};
-use super::ours::tuned_on;
+use super::kit::Kit;
 use super::scene::{Scene, TICK_HZ};
 use crate::parallel;
 use crate::screw::{BeforeAndAfter, ScrewCase, ScrewFailure};
@@ -17,13 +17,15 @@ const REVERSAL: f64 = 1.0;
 const TRAVEL_MM: f64 = 300.0;
 const POINTS: usize = 256;
 const SETTLE_S: f64 = 0.6;
+/// Times that each point is measured from either side.
+const RUNS: usize = 3;
 /// Largest feed of the axis that counts, mm/min.
 const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
 /// What draws the machine's errors.
 const SEED: u64 = 1;
 
 /// Measures the screw by each drive.
-pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
+pub fn carriage(kit: &Kit) -> Result<Vec<CarriageRow>, TrackingError> {
     let [outside, ..] = Scene::with_backlash();
     let full = outside.nominal;
     let mut bare = Scene::bare().nominal;
@@ -37,16 +39,23 @@ pub fn carriage() -> Result<Vec<CarriageRow>, TrackingError> {
         counting,
     )?;
     let cases = [
-        ("bare drive, loop on the count", bare, counting),
-        ("full, autotuned", full, tuned_on(&full)?.0),
+        ("bare drive, loop on the count", bare, counting, None),
+        (
+            "full, autotuned",
+            full,
+            kit.cold(&full, SEED)?.params,
+            kit.map(&full, SEED)?,
+        ),
     ];
-    let done = parallel::map(&cases, |(name, machine, axis)| {
+    let done = parallel::map(&cases, |(name, machine, axis, map)| {
         let case = ScrewCase {
             machine: *machine,
             axis: *axis,
+            map: *map,
             seed: SEED,
             travel_mm: TRAVEL_MM,
             points: POINTS,
+            runs: RUNS,
             settle_s: SETTLE_S,
         };
         match case.run() {

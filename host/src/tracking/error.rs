@@ -9,6 +9,7 @@ use leadscrew_hal_mock::scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::calibration::CalibrationError;
+use crate::identify::IdentifyError;
 use crate::threads::ThreadError;
 
 /// Why there are no tables.
@@ -47,9 +48,15 @@ pub enum TrackingError {
         /// Why.
         error: Box<TrackingError>,
     },
+    /// The drive was not identified.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     /// No tuning can be offered.
     #[error("{0}")]
     Autotune(AutotuneError),
+    /// A machine that no axis was commissioned on.
+    #[error("no axis was commissioned on this machine: name its scene when the kit is made")]
+    NotCommissioned,
     /// A thread was not cut.
     #[error(transparent)]
     Thread(#[from] ThreadError),

@@ -177,11 +177,41 @@ pub struct Threads {
     pub phase_spread_deg: Judged,
 }
 
+/// What identification found of a machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct IdentifiedRow {
+    /// The machine.
+    pub machine: &'static str,
+    /// Its figures.
+    pub figures: Vec<IdentifiedFigure>,
+}
+
+/// A figure as it was identified with all encoders, beside the machine's.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct IdentifiedFigure {
+    /// What it is.
+    pub figure: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What the machine has.
+    pub truth: f64,
+    /// Mean of what was found; null where nothing was.
+    pub mean: Option<f64>,
+    /// Largest difference from the machine's; null where nothing was found.
+    pub worst: Option<f64>,
+}
+
 /// All tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
     /// Our moves.
     pub moves: Vec<MoveRow>,
+    /// The same scenes by an axis that was tuned on its drive's true figures: what identification costs.
+    pub known: Vec<MoveRow>,
+    /// The off nominal machines by axes commissioned on them.
+    pub there: Vec<MoveRow>,
+    /// What identification found, of each machine that an axis was commissioned on.
+    pub identified: Vec<IdentifiedRow>,
     /// Gains of the law of LinuxCNC's `pid`.
     pub peer_gains: Vec<PeerGains>,
     /// The same moves by it.

@@ -73,6 +73,19 @@ impl Scene {
         })
     }
 
+    /// The full machine off nominal, commissioned as it is.
+    #[must_use]
+    pub fn commissioned_off_nominal() -> [Self; 2] {
+        let names = ["-20 %/+30 %, tuned there", "+20 %/-25 %, tuned there"];
+        let [low, high] = Self::corners();
+        [(names[0], low), (names[1], high)].map(|(name, corner)| Self {
+            name,
+            nominal: corner.machine(),
+            actual: (1.0, 1.0),
+            ..corner
+        })
+    }
+
     /// The full machine with backlash: between screw and carriage, in the encoder's coupling, in the loop of a
     /// linear scale.
     #[must_use]

@@ -4,28 +4,30 @@ use leadscrew_hal_mock::encoder::EncoderModel;
 
 use super::error::TrackingError;
 use super::figures::{Judged, ThreadPass, Threads};
+use super::kit::Kit;
 use super::scene::Scene;
 use crate::parallel;
-use crate::threads::{ThreadRow, ThreadTable};
+use crate::threads::{Lathe, ThreadRow, ThreadTable};
 
 /// Most that two passes may differ in phase, °.
 const PHASE_SPREAD_DEG: f64 = 0.1;
 /// Largest pitch error over 100 mm, d.
 const PITCH_ERROR: f64 = 2.0;
-/// Where the poles of the loop are placed, with the observer in it, rad/s.
-const BANDWIDTH_RAD_PER_S: f64 = 100.0;
 /// Passes at each speed.
 const PASSES: u32 = 3;
 /// What draws the errors of both encoders.
 const SEED: u64 = 1;
 
-/// Cuts the threads.
-pub fn threads() -> Result<Vec<Threads>, TrackingError> {
+/// Cuts the threads by the axes commissioned from cold, with the learned map.
+pub fn threads(kit: &Kit) -> Result<Vec<Threads>, TrackingError> {
     let [bare, full, ..] = Scene::of_moves();
     let done = parallel::map(&[bare, full], |scene| {
         let machine = scene.machine();
-        let encoder = EncoderModel::real();
-        let table = ThreadTable::cut(&machine, encoder, BANDWIDTH_RAD_PER_S, PASSES, SEED)?;
+        let params = &kit.cold(&scene.nominal, SEED)?.params;
+        let map = kit.map(&machine, SEED)?;
+        let table = ThreadTable::cut_by(machine.mount.counts_per_mm, PASSES, |spindle| {
+            Lathe::with(params, map, &machine, spindle, EncoderModel::real(), SEED)
+        })?;
         Ok(Threads {
             machine: scene.name,
             passes: table.rows.iter().map(ThreadPass::from).collect(),

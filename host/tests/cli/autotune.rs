@@ -53,8 +53,27 @@ fn a_feed_without_room_for_control_is_refused_with_the_figure() {
     let message = folder.refused(2, "autotune --max-feed 9400 --out axis.toml");
     assert_says(
         &message,
-        &["--max-feed 9400", "95 %", "mm/min at full command"],
+        &[
+            "--max-feed 9400",
+            "95 %",
+            "mm/min at full command",
+            "ask for 9100 or less",
+        ],
     );
+}
+
+#[test]
+fn a_slower_drive_gets_the_feed_that_it_gives() {
+    let folder = Folder::new();
+    folder.write(
+        "slow.toml",
+        "base = \"16k20f3\"\n[drive]\nfull_command_feed_mm_per_min = 7680.0\nnatural_period_s = 0.117\n",
+    );
+    let report = folder.json("autotune --machine slow.toml");
+    // 95 % of some 7 680 mm/min, in round figures.
+    assert_eq!(number(&report, "/max_feed_mm_per_min"), 7200.0);
+    assert!(number(&report, "/after/peak_d") < 20.0);
+    assert!(number(&report, "/after/rest_swing_d") < 1.0);
 }
 
 #[test]

@@ -8,21 +8,16 @@ mod report;
 use std::path::Path;
 
 use leadscrew::encoder_map::EncoderMap;
-use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::observer::{Config, ObserverParams};
-use leadscrew::params::{AxisParams, MotionParams};
-use leadscrew::tuning::autotune::{
-    AutotuneError, EstimatorChoice, Report as Offer, autotune, observer_on,
-};
+use leadscrew::params::{AxisParams, ParamError};
+use leadscrew::tuning::DriveModel;
+use leadscrew::tuning::autotune::{AutotuneError, Report as Offer, observer_on};
 use leadscrew::units::checked;
-use leadscrew_hal_mock::machine::MachineParams;
-use leadscrew_hal_mock::scenario::observer_params;
 
 use super::identify::{bench, identify};
 use super::{check_replaceable, print, print_json, write_file};
 use crate::axis_file::{self, AxisFile};
-use crate::calibration::{Procedure, learn_simulated};
 use crate::cli::AutotuneArgs;
+use crate::commissioning::{counts_on, feed_within, learned, map_of, offer};
 use crate::error::CommandError;
 use crate::identify::Bench;
 use crate::progress::Progress;
@@ -32,8 +27,12 @@ use report::Report;
 /// Distance of the move that shows how well an axis follows, mm.
 const MOVE_MM: f64 = 300.0;
 
+/// Largest feed where none is asked for, mm/min: that of the 16K20F3; a slower drive gives less.
+const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
+
 /// What is offered, and how it does.
 struct Tuned {
+    max_feed_mm_per_min: f64,
     file: AxisFile,
     offer: Offer,
     before: AxisParams,
@@ -53,11 +52,19 @@ pub fn run(args: &AutotuneArgs) -> Result<(), CommandError> {
             Some(Path::new(&args.bench.simulated.machine)),
         )?;
     }
-    let max_feed = checked("--max-feed", args.max_feed, 0.1, 1e6)
+    let asked = args
+        .max_feed
+        .map(|feed| checked("--max-feed", feed, 0.1, 1e6));
+    let asked = asked
+        .transpose()
         .map_err(|error| CommandError::Usage(format!("{error} mm/min")))?;
     let bench = bench(&args.bench)?;
-    let found = identify(&args.bench, &bench)?;
-    let tuned = tune(args, &bench, max_feed, &found.identified.model())?;
+    let image = learned(&bench.machine, bench.seed);
+    let map = map_of(image.as_deref());
+    let found = identify(&args.bench, &bench, map)?;
+    let model = found.identified.model();
+    let max_feed = asked.unwrap_or_else(|| feed_within(&model, MAX_FEED_MM_PER_MIN));
+    let tuned = tune(args, &bench, max_feed, &model, map)?;
     if let Some(path) = &args.out {
         let text = axis_file::dump(&tuned.file);
         write_file(path, |file| file.write_all(text.as_bytes()))?;
@@ -74,39 +81,23 @@ fn tune(
     args: &AutotuneArgs,
     bench: &Bench,
     max_feed: f64,
-    model: &leadscrew::tuning::DriveModel,
+    model: &DriveModel,
+    map: Option<EncoderMap<'_>>,
 ) -> Result<Tuned, CommandError> {
     let _tuning = Progress::endless("tuning");
     let machine = &bench.machine;
-    let image = learned(machine, bench.seed);
-    let map = image
-        .as_deref()
-        .and_then(|image| EncoderMap::from_bytes(image).ok());
-    let counts_on = if map.is_some() || machine.encoder.disc.line_sigma_d == 0.0 {
-        ObserverParams::default()
-    } else {
-        observer_params(machine, false)
-    };
+    let counts_on = counts_on(machine, map.is_some());
     let refused = |error: AutotuneError| match error {
-        AutotuneError::Param(error) => {
-            CommandError::Usage(format!("--max-feed {max_feed}: {error}"))
+        AutotuneError::Param(error @ ParamError::FeedTooHigh { .. }) => {
+            let most = feed_within(model, max_feed);
+            CommandError::Usage(format!(
+                "--max-feed {max_feed}: {error}; ask for {most} or less"
+            ))
         }
+        AutotuneError::Param(error) => CommandError::Usage(error.to_string()),
         error => CommandError::Data(format!("{}: {error}", args.bench.simulated.machine)),
     };
-    let start = Config::of_16k20f3().map_err(|error| CommandError::Data(error.to_string()))?;
-    let base = bench
-        .axis_params()
-        .map_err(|error| CommandError::Usage(error.to_string()))?;
-    let base = AxisParams {
-        motion: MotionParams {
-            max_feed_mm_per_min: max_feed,
-            ..base.motion
-        },
-        estimator: EstimatorConfig::Observer(start),
-        ..base
-    };
-    let (axis, offer) =
-        autotune(model, &base, &EstimatorChoice::Observer(counts_on)).map_err(refused)?;
+    let (axis, offer) = offer(bench, model, max_feed, &counts_on).map_err(refused)?;
     let course = Course::Move {
         distance_mm: MOVE_MM,
         feed_mm_per_min: max_feed,
@@ -122,6 +113,7 @@ fn tune(
         rig.run(&course).ok()
     };
     Ok(Tuned {
+        max_feed_mm_per_min: max_feed,
         file: AxisFile {
             axis,
             observer: observer_on(&counts_on, model),
@@ -130,11 +122,4 @@ fn tune(
         before,
         follows: [follow(&before), follow(&axis)],
     })
-}
-
-/// A map of the machine's encoder, where it has a disc with errors.
-fn learned(machine: &MachineParams, seed: u64) -> Option<Vec<u8>> {
-    let has_disc = machine.mount.linear_scale < 0.5 && machine.encoder.disc.line_sigma_d > 0.0;
-    let learn = || learn_simulated(&machine.encoder, seed, &Procedure::default()).ok();
-    has_disc.then(learn).flatten()
 }

@@ -94,7 +94,7 @@ impl Report {
         Self {
             schema: "leadscrew/autotune/1",
             identification: identify::Report::new(&args.bench, bench, found),
-            max_feed_mm_per_min: args.max_feed,
+            max_feed_mm_per_min: tuned.max_feed_mm_per_min,
             bandwidth_rad_per_s: offer.bandwidth_rad_per_s,
             parameters: changed(tuned.before, tuned.file.axis),
             margins: MarginFigures {

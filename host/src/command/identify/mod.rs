@@ -4,11 +4,13 @@ mod report;
 
 use std::path::Path;
 
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::identification::IdentifyParams;
 use leadscrew::units::checked;
 
 use super::{check_replaceable, file_name, is_picture, machine, print, print_json, tick_rate};
 use crate::cli::{BenchArgs, IdentifyArgs};
+use crate::commissioning::{learned, map_of};
 use crate::error::CommandError;
 use crate::figures::{self, panel};
 use crate::identify::{Bench, Found, IdentifyError, Sample};
@@ -32,7 +34,8 @@ pub fn run(args: &IdentifyArgs) -> Result<(), CommandError> {
         )?;
     }
     let bench = bench(&args.bench)?;
-    let found = identify(&args.bench, &bench)?;
+    let image = learned(&bench.machine, bench.seed);
+    let found = identify(&args.bench, &bench, map_of(image.as_deref()))?;
     if let Some(path) = &args.plot {
         let _drawing = Progress::endless("drawing");
         figure(&args.bench.simulated.machine, &found).save(path)?;
@@ -66,9 +69,13 @@ pub(super) fn bench(args: &BenchArgs) -> Result<Bench, CommandError> {
 }
 
 /// Runs the experiments; a refusal names the machine.
-pub(super) fn identify(args: &BenchArgs, bench: &Bench) -> Result<Found, CommandError> {
+pub(super) fn identify(
+    args: &BenchArgs,
+    bench: &Bench,
+    map: Option<EncoderMap<'_>>,
+) -> Result<Found, CommandError> {
     let _identifying = Progress::endless("identifying");
-    bench.run().map_err(|error| match error {
+    bench.run(map).map_err(|error| match error {
         IdentifyError::Param(error) => CommandError::Usage(error.to_string()),
         refused => CommandError::Data(format!("{}: {refused}", args.simulated.machine)),
     })

@@ -3,32 +3,39 @@
 //! The axis goes to each target from below and from above and comes to rest; a reading is where the carriage is less
 //! where the axis says it is. What the servo leaves at rest is not the screw's and stands in a figure of its own.
 
+mod bench;
+
 use std::fmt;
 
-use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::compensation::{
     CompensationParams, ScrewError, ScrewPoint, ScrewTable, Stretch, TableError, TableRefused,
 };
-use leadscrew::hal::Encoder;
+use leadscrew::encoder_map::EncoderMap;
 use leadscrew::params::{AxisParams, ParamError};
-use leadscrew::setpoint::profile::{Limits, PlanError, Profile};
+use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::units::Position;
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
+use leadscrew_hal_mock::machine::MachineParams;
+
+use self::bench::Bench;
 
 /// A screw to measure, on a machine with its axis.
 #[derive(Clone, Copy, Debug)]
-pub struct ScrewCase {
+pub struct ScrewCase<'m> {
     /// The machine.
     pub machine: MachineParams,
     /// The axis on it; compensation is set by what is measured.
     pub axis: AxisParams,
+    /// Map of its encoder.
+    pub map: Option<EncoderMap<'m>>,
     /// What draws the machine's errors.
     pub seed: u64,
     /// Travel to measure, from 0 on, mm.
     pub travel_mm: f64,
     /// Points of the table.
     pub points: usize,
+    /// Times that each point is measured from either side for the table; the mean counts, as in ISO 230-2.
+    pub runs: usize,
     /// Standing still before a reading, s.
     pub settle_s: f64,
 }
@@ -104,21 +111,17 @@ impl<E: Into<ParamError>> From<E> for ScrewFailure {
     }
 }
 
-/// Ticks that a reading is the mean of.
-const READING_TICKS: u32 = 50;
-/// Share of the axis's limits that is used: play is told from the screw only if the axis does not overshoot by it.
-const GENTLE: f64 = 0.1;
 /// From where the first target is approached, d.
 const RUN_UP_D: f64 = 2000.0;
 
-impl ScrewCase {
+impl<'m> ScrewCase<'m> {
     /// Measures the screw, makes its table and measures it again.
     ///
     /// # Errors
     /// [`ScrewFailure`].
     pub fn run(&self) -> Result<BeforeAndAfter, ScrewFailure> {
         let targets = self.targets(self.points, 0.0);
-        let before = self.survey(CompensationParams::default(), None, &targets)?;
+        let before = self.survey(CompensationParams::default(), None, &targets, self.runs)?;
         let points = before.points();
         let mut memory = vec![Stretch::default(); points.len()];
         let table = ScrewTable::build(&points, &mut memory).map_err(ScrewFailure::Table)?;
@@ -135,8 +138,8 @@ impl ScrewCase {
         Ok(BeforeAndAfter {
             points: points.len(),
             before: before.figures(),
-            backlash: self.survey(with_backlash, None, &others)?.figures(),
-            after: self.survey(with_table, Some(table), &others)?.figures(),
+            backlash: self.survey(with_backlash, None, &others, 1)?.figures(),
+            after: self.survey(with_table, Some(table), &others, 1)?.figures(),
         })
     }
 
@@ -148,29 +151,38 @@ impl ScrewCase {
         (0..count.max(2)).map(place).collect()
     }
 
-    /// Readings at `targets`, which grow, with a compensation.
+    /// Readings at `targets`, which grow, with a compensation: the mean of so many runs there and back.
     ///
     /// # Errors
     /// [`ScrewFailure`].
-    pub fn survey(
+    pub fn survey<'t>(
         &self,
         compensation: CompensationParams,
-        table: Option<ScrewTable<'_>>,
+        table: Option<ScrewTable<'t>>,
         targets: &[f64],
-    ) -> Result<Survey, ScrewFailure> {
+        runs: usize,
+    ) -> Result<Survey, ScrewFailure>
+    where
+        'm: 't,
+    {
         let mut bench = Bench::new(self, compensation, table)?;
-        let mut survey = Survey::default();
+        let mut survey = Survey {
+            readings: targets.iter().map(|place| (*place, [0.0; 2])).collect(),
+            standing: 0.0,
+        };
         let (Some(first), Some(last)) = (targets.first(), targets.last()) else {
             return Ok(survey);
         };
-        bench.go_to(first - RUN_UP_D)?;
-        for target in targets {
-            let error = bench.read_at(*target, &mut survey.standing)?;
-            survey.readings.push((*target, [error, 0.0]));
-        }
-        bench.go_to(last + RUN_UP_D)?;
-        for (target, [_, backward]) in survey.readings.iter_mut().rev() {
-            *backward = bench.read_at(*target, &mut survey.standing)?;
+        let share = 1.0 / runs.max(1) as f64;
+        for _ in 0..runs.max(1) {
+            bench.go_to(first - RUN_UP_D)?;
+            for (target, [forward, _]) in &mut survey.readings {
+                *forward += share * bench.read_at(*target, &mut survey.standing)?;
+            }
+            bench.go_to(last + RUN_UP_D)?;
+            for (target, [_, backward]) in survey.readings.iter_mut().rev() {
+                *backward += share * bench.read_at(*target, &mut survey.standing)?;
+            }
         }
         Ok(survey)
     }
@@ -200,87 +212,5 @@ impl Survey {
             mean_reversal: reversals().sum::<f64>() / self.readings.len().max(1) as f64,
             standing: self.standing,
         }
-    }
-}
-
-/// The machine under the laser.
-struct Bench<'m> {
-    machine: Machine,
-    axis: Axis<'m>,
-    outputs: Outputs,
-    limits: Limits,
-    settle_ticks: u32,
-}
-
-impl<'m> Bench<'m> {
-    fn new(
-        case: &ScrewCase,
-        compensation: CompensationParams,
-        table: Option<ScrewTable<'m>>,
-    ) -> Result<Self, ScrewFailure> {
-        let params = AxisParams {
-            compensation,
-            ..case.axis
-        };
-        let mut axis = Axis::new(params.validate()?);
-        if table.is_some() {
-            axis.set_screw_table(table).map_err(ScrewFailure::Refused)?;
-        }
-        axis.set_origin(Some(Position::ZERO));
-        let limits = axis.config().limits;
-        let limits = Limits::new(
-            GENTLE * limits.velocity().to_num::<f64>(),
-            GENTLE * limits.acceleration().to_num::<f64>(),
-            GENTLE * limits.jerk().to_num::<f64>(),
-        )?;
-        let mut bench = Self {
-            machine: Machine::new(&case.machine, params.tick_hz, case.seed)?,
-            axis,
-            outputs: Outputs::default(),
-            limits,
-            settle_ticks: (case.settle_s * params.tick_hz) as u32,
-        };
-        bench.stand(bench.settle_ticks);
-        Ok(bench)
-    }
-
-    fn step(&mut self) {
-        self.machine
-            .step(self.outputs.command, self.outputs.enabled);
-        self.outputs = *self.axis.step(&Inputs::of(self.machine.capture(), true));
-    }
-
-    fn stand(&mut self, ticks: u32) {
-        for _ in 0..ticks {
-            self.step();
-        }
-    }
-
-    /// Moves to a place, d from the origin, and waits for rest.
-    fn go_to(&mut self, place: f64) -> Result<(), ScrewFailure> {
-        let behind = Position::from_bits(i64::from(self.outputs.following_error.to_bits()));
-        let commanded = self.outputs.reported + behind;
-        let distance = Position::saturating_from_num(place) - commanded;
-        let profile = Profile::plan(distance, &self.limits).map_err(ScrewFailure::Plan)?;
-        let start = self.outputs.tick.wrapping_add(1);
-        self.axis
-            .queue(&profile, start)
-            .map_err(ScrewFailure::Queue)?;
-        self.stand(profile.ticks() + self.settle_ticks);
-        Ok(())
-    }
-
-    /// Carriage less place at rest at `place`.
-    fn read_at(&mut self, place: f64, standing: &mut f64) -> Result<f64, ScrewFailure> {
-        self.go_to(place)?;
-        let mut sum = 0.0;
-        for _ in 0..READING_TICKS {
-            self.step();
-            let carriage = self.machine.truth().carriage.position;
-            sum += carriage - self.outputs.reported.to_num::<f64>();
-            let behind: f64 = self.outputs.following_error.to_num();
-            *standing = standing.max(behind.abs());
-        }
-        Ok(sum / f64::from(READING_TICKS))
     }
 }
