@@ -22,7 +22,7 @@ use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
-use crate::estimator::{Estimator, Evidence};
+use crate::estimator::{Estimator, Evidence, Variances};
 use crate::hal::Lines;
 use crate::homing::Homing;
 use crate::identification::experiment::{Experiment, Seen};
@@ -295,6 +295,12 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// How uncertain the estimate of the last tick is.
+    #[must_use]
+    pub fn variances(&self) -> Variances {
+        self.estimators.variances(self.edges.noise())
     }
 
     /// What of the last command goes against friction.

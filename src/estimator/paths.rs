@@ -8,7 +8,8 @@
 //! One estimator serves all paths unless a second one is given; a second one costs its own update alone, since
 //! the sample of the tick's edges is made once.
 
-use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence};
+use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence, Variances};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Position, RangeError, Velocity, checked};
 
 /// One of the estimators.
@@ -183,17 +184,26 @@ impl Estimators {
             evidence.sample = evidence.edges.sample(evidence.observation);
         }
         let Some(second) = &mut self.second else {
-            *display = self.first.update(evidence);
+            self.first.update_into(evidence, display);
             return;
         };
         if self.is_display_alone {
             // Each goes where it is wanted, and nothing is parted.
-            *display = second.update(evidence);
-            self.feedback = self.first.update(evidence);
+            second.update_into(evidence, display);
+            self.first.update_into(evidence, &mut self.feedback);
         } else {
             let second = second.update(evidence);
             let first = self.first.update(evidence);
             self.share([first, second], display);
+        }
+    }
+
+    /// How uncertain the newest of what is shown is. Outside the tick.
+    #[must_use]
+    pub fn variances(&self, noise: &EdgeNoise) -> Variances {
+        match (self.paths.display, &self.second) {
+            (Choice::Second, Some(second)) => second.variances(noise),
+            _ => self.first.variances(noise),
         }
     }
 

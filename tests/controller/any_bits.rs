@@ -2,7 +2,7 @@
 
 use leadscrew::controller::config::Gains;
 use leadscrew::controller::{Config, Controller};
-use leadscrew::estimator::{Estimate, Lags, Variances};
+use leadscrew::estimator::{Estimate, Lags};
 use leadscrew::output::ActiveLimits;
 use leadscrew::setpoint::Setpoint;
 use leadscrew::units::{Acceleration, Command, Jerk, Lag, Position, Velocity};
@@ -93,7 +93,6 @@ fn any_estimate() -> impl Strategy<Value = Estimate> {
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::from_bits(acceleration),
             lags,
-            variances: Variances::default(),
         },
     )
 }

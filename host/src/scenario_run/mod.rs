@@ -6,6 +6,7 @@ mod judge;
 
 use leadscrew::axis::{Axis, Outputs};
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::estimator::Variances;
 use leadscrew::setpoint::thread::SpindleTrouble;
 use leadscrew::supervisor::FirstFault;
 use leadscrew_hal_mock::arc::State;
@@ -26,6 +27,8 @@ use crate::progress::Progress;
 pub struct Tick {
     /// What the axis put out.
     pub outputs: Outputs,
+    /// How uncertain its estimate is.
+    pub variances: Variances,
     /// The screw, as it really moves: what the encoder says if nothing is wrong with it.
     pub shaft: State,
     /// Carriage, d.
@@ -103,6 +106,7 @@ fn run_with<'s>(scenario: &Scenario<'s>, map: Option<EncoderMap<'s>>) -> Result<
         let machine = &runner.world.board.machine;
         ticks.push(Tick {
             outputs,
+            variances: runner.axis.variances(),
             shaft: machine.screw(),
             carriage: machine.truth().carriage.position,
         });

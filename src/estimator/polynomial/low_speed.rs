@@ -1,7 +1,8 @@
 //! What holds where edges are few: silence, and an edge passed to and fro.
 
 use crate::edges::Span;
-use crate::units::{Position, Velocity};
+use crate::estimator::Variances;
+use crate::units::{Position, Variance, Velocity};
 
 /// How long no edge has come.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,6 +75,23 @@ impl Silence {
             .checked_div(self.ticks_q8)
             .unwrap_or(0);
         Some(most.cast_signed())
+    }
+
+    /// What is not known of a velocity at rest is what the silence up to `count` allows.
+    pub fn variances(&self, count: i32) -> Variances {
+        let most = self.most(count).unwrap_or(i32::MAX).cast_unsigned();
+        let square = u64::from(most.min(1 << 24)).wrapping_mul(u64::from(most.min(1 << 24)));
+        // Uniform within ±most: a third of the square.
+        let variance = Variance::from_bits(
+            square
+                .wrapping_shl(Variance::FRAC_NBITS - 2 * Velocity::FRAC_NBITS)
+                .checked_div(3)
+                .unwrap_or(0),
+        );
+        Variances {
+            velocity: variance,
+            acceleration: variance,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::config::{Config, MIN_SAMPLES};
 use super::fit::Sums;
-use super::regular::AgeSums;
+use super::regular;
 
 /// Most samples.
 pub const CAPACITY: usize = 64;
@@ -30,7 +30,7 @@ pub struct Sample {
 #[repr(C)]
 pub struct Window {
     /// Sums over a regular window; of no meaning else.
-    ages: AgeSums,
+    regular: regular::Sums,
     newest: usize,
     count: usize,
     edges: u32,
@@ -59,7 +59,7 @@ impl Window {
             newest: 0,
             count: 0,
             edges: 0,
-            ages: AgeSums::NONE,
+            regular: regular::Sums::NONE,
             origin: 0,
             base: 0,
             regularity: Regularity {
@@ -107,15 +107,20 @@ impl Window {
         self.base = base;
         match sample {
             Some(sample) if self.goes_on(steps, &sample) && self.is_regular(config) => {
-                config.regular.move_base(&mut self.ages, way);
-                self.exchange(config, sample);
+                self.exchange(config, way, sample);
                 Some(sample.step)
             }
             _ => {
                 self.change(config, steps, sample);
-                self.is_regular(config).then_some(self.regularity.step)
+                self.regular_step(config)
             }
         }
+    }
+
+    /// Step of the newest sample if a full window of them stands one a tick.
+    #[inline]
+    pub fn regular_step(&self, config: &Config) -> Option<i32> {
+        self.is_regular(config).then_some(self.regularity.step)
     }
 
     #[inline]
@@ -125,12 +130,12 @@ impl Window {
 
     /// One for one: what a regular window does.
     #[inline]
-    fn exchange(&mut self, config: &Config, sample: Sample) {
+    fn exchange(&mut self, config: &Config, way: i32, sample: Sample) {
         let slot = self.newest.wrapping_add(self.count).wrapping_sub(1) & (CAPACITY - 1);
         if let (Some(edges), Some(oldest)) = (self.edges_of.get(slot), self.places.get(slot)) {
             let newest = sample.place.wrapping_sub(self.base);
             let oldest = oldest.wrapping_sub(self.base);
-            config.regular.exchange(&mut self.ages, newest, oldest);
+            config.regular.tick(&mut self.regular, way, newest, oldest);
             self.edges = self
                 .edges
                 .wrapping_add(sample.edges)
@@ -158,7 +163,7 @@ impl Window {
         }
         self.drop_old(config);
         if self.is_regular(config) {
-            self.ages = AgeSums::of(self.places());
+            self.regular = config.regular.sums(self.places());
         }
     }
 
@@ -218,8 +223,8 @@ impl Window {
     }
 
     /// Sums over a regular window.
-    pub const fn ages(&self) -> &AgeSums {
-        &self.ages
+    pub const fn regular(&self) -> &regular::Sums {
+        &self.regular
     }
 
     /// Places from the base, newest first.
