@@ -49,14 +49,20 @@ impl Silence {
         self.ticks_q8
     }
 
-    /// A velocity no larger than the silence up to `count` allows, and not turned round: that would be seen on an edge.
+    /// A velocity no larger than the silence up to `count` allows, and not turned round: that would be seen on an edge;
+    /// and the same where it may have turned.
     #[inline]
-    pub fn hold(&self, velocity: i32, count: i32) -> i32 {
-        match self.most(count) {
-            None => velocity,
-            Some(most) if self.is_backward => velocity.clamp(most.wrapping_neg(), 0),
-            Some(most) => velocity.clamp(0, most),
-        }
+    pub fn hold(&self, velocity: i32, count: i32) -> (i32, i32) {
+        let Some(most) = self.most(count) else {
+            return (velocity, velocity);
+        };
+        let least = most.wrapping_neg();
+        let (lowest, highest) = if self.is_backward {
+            (least, 0)
+        } else {
+            (0, most)
+        };
+        (velocity.clamp(lowest, highest), velocity.clamp(least, most))
     }
 
     /// The largest velocity after a silence of more than a tick, Q12.20 d/tick: one discrete, and half a one for displaced

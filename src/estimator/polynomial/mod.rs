@@ -291,11 +291,10 @@ impl Estimator {
     fn answer(&mut self, observation: &Observation<'_>, found: &Found, estimate: &mut Estimate) {
         let behind = found.behind;
         let extrapolated = found.newest();
-        let newest = self.silence.hold(extrapolated, self.count);
         // The next sample is bridged to its step by how the shaft went, and it may have turned round.
-        let most = self.silence.most(self.count).unwrap_or(i32::MAX);
+        let (newest, bridging) = self.silence.hold(extrapolated, self.count);
         self.motion = Motion {
-            newest: extrapolated.clamp(most.wrapping_neg(), most),
+            newest: bridging,
             acceleration: found.acceleration,
         };
         let lag = Lag::from_bits(behind.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS));

@@ -14,7 +14,7 @@
 //! Where the places count from is in X alone: the others are orthogonal to a constant.
 
 use super::config::MIN_SAMPLES;
-use super::fit::{times, wide};
+use super::fit::wide;
 use super::geometry::{GAIN_FRAC, Gains};
 use super::window::{CAPACITY, PLACE_FRAC};
 
@@ -144,7 +144,7 @@ impl Regular {
     pub fn place(&self, sums: &Sums, acceleration: i32) -> i64 {
         // 64 bits by 32, of which the last 32 are a fraction, and three of those are wanted.
         const WANTED_BITS: u32 = 16 - PLACE_FRAC;
-        let high = times(sums.x.wrapping_shr(32), self.per_sample);
+        let high = wide(sums.x.wrapping_shr(32) as i32, self.per_sample);
         let low = u64::from(sums.x as u32).wrapping_mul(u64::from(self.per_sample.cast_unsigned()));
         let low = low.wrapping_shr(32 - WANTED_BITS).cast_signed();
         let mean = high.wrapping_shl(WANTED_BITS).wrapping_add(low);
@@ -156,8 +156,16 @@ impl Regular {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Factor {
     mantissa: u32,
-    /// Right shift of the product's words but the last, 1 to 31.
-    shift: u32,
+    narrowing: Narrowing,
+}
+
+/// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Narrowing {
+    /// 2ˢ⁻¹: half a unit of what is left, and where the high word of what still fits ends.
+    half: i32,
+    /// 2³²⁻ˢ.
+    multiplier: u32,
 }
 
 impl Factor {
@@ -167,7 +175,7 @@ impl Factor {
         let bits = 32_i32.wrapping_sub(exponent);
         Self {
             mantissa: libm::round(libm::ldexp(factor, bits)) as u32,
-            shift: bits.cast_unsigned().wrapping_sub(32).clamp(1, 31),
+            narrowing: Narrowing::by(bits.cast_unsigned().wrapping_sub(32)),
         }
     }
 
@@ -177,24 +185,38 @@ impl Factor {
         let mantissa = self.mantissa as u64;
         let high = value.wrapping_shr(32).wrapping_mul(mantissa.cast_signed());
         let low = (value as u32 as u64).wrapping_mul(mantissa);
-        let half = 1_u32.wrapping_shl(self.shift.wrapping_sub(1));
-        let low = low.wrapping_shr(32).wrapping_add(half as u64);
-        narrow(high.wrapping_add(low.cast_signed()), self.shift)
+        let low = low
+            .wrapping_shr(32)
+            .wrapping_add(self.narrowing.half.cast_unsigned() as u64);
+        self.narrowing.apply(high.wrapping_add(low.cast_signed()))
     }
 }
 
-/// `sum`/2^`shift`, rounded down, saturating; `shift` is 1 to 31.
-#[inline]
-const fn narrow(sum: i64, shift: u32) -> i32 {
-    let most = 1_i32.wrapping_shl(shift.wrapping_sub(1));
-    let high = sum.wrapping_shr(32) as i32;
-    if high >= most {
-        i32::MAX
-    } else if high < most.wrapping_neg() {
-        i32::MIN
-    } else {
-        let low = (sum as u32).wrapping_shr(shift);
-        high.wrapping_shl(32_u32.wrapping_sub(shift)) | low.cast_signed()
+impl Narrowing {
+    /// By `shift`.
+    fn by(shift: u32) -> Self {
+        let shift = shift.clamp(1, 31);
+        Self {
+            half: 1_i32.wrapping_shl(shift.wrapping_sub(1)),
+            multiplier: 1_u32.wrapping_shl(32_u32.wrapping_sub(shift)),
+        }
+    }
+
+    /// `sum`/2ˢ, rounded down, saturating.
+    #[inline]
+    const fn apply(self, sum: i64) -> i32 {
+        let high = sum.wrapping_shr(32) as i32;
+        if high >= self.half {
+            i32::MAX
+        } else if high < self.half.wrapping_neg() {
+            i32::MIN
+        } else {
+            let low = (sum as u32 as u64)
+                .wrapping_mul(self.multiplier as u64)
+                .wrapping_shr(32) as i32;
+            high.wrapping_mul(self.multiplier.cast_signed())
+                .wrapping_add(low)
+        }
     }
 }
 
@@ -250,12 +272,12 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_saturates() {
-        assert_eq!(narrow(i64::MAX, 25), i32::MAX);
-        assert_eq!(narrow(i64::MIN, 25), i32::MIN);
-        assert_eq!(narrow((1 << 56) - 1, 25), i32::MAX);
-        assert_eq!(narrow(1 << 56, 25), i32::MAX);
-        assert_eq!(narrow(-(1 << 56), 25), i32::MIN);
-        assert_eq!(narrow(-1, 31), -1);
-        assert_eq!(narrow(3 << 30, 31), 1);
+        assert_eq!(Narrowing::by(25).apply(i64::MAX), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(i64::MIN), i32::MIN);
+        assert_eq!(Narrowing::by(25).apply((1 << 56) - 1), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(1 << 56), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(-(1 << 56)), i32::MIN);
+        assert_eq!(Narrowing::by(31).apply(-1), -1);
+        assert_eq!(Narrowing::by(31).apply(3 << 30), 1);
     }
 }
