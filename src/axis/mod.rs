@@ -8,8 +8,6 @@ mod reconfigure;
 mod request;
 mod sources;
 
-use place::loses_place;
-
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
@@ -25,7 +23,7 @@ use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence, Variances};
 use crate::hal::Lines;
 use crate::homing::Homing;
-use crate::identification::experiment::{Experiment, Seen};
+use crate::identification::experiment::Experiment;
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::sources::Sources;
@@ -42,6 +40,8 @@ pub struct Axis<'m> {
     /// The tick that comes next.
     tick: u32,
     output: Output,
+    /// There is an experiment: itself it is a long way off in memory.
+    has_experiment: bool,
     /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
     compensation: Compensation<'m>,
@@ -70,6 +70,7 @@ impl<'m> Axis<'m> {
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             experiment: None,
+            has_experiment: false,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -98,9 +99,7 @@ impl<'m> Axis<'m> {
             command,
         };
         self.estimators.update(&mut evidence, &mut outputs.estimate);
-        let (_, position) = self
-            .estimators
-            .feedback(&outputs.estimate, observation.position());
+        let position = self.estimators.position(observation.position());
 
         let told = self.output.command();
         let mut left = Lines::default();
@@ -117,45 +116,45 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        // Asked once: the answer is a long way off in memory.
-        let is_experiment = self.experiment.is_some();
-        let open_loop = is_experiment && self.is_open_loop();
+        let open_loop = self.has_experiment && self.is_open_loop();
         if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let reference = &inputs.reference;
         self.sources
             .read_master(reference.master.as_ref(), lines.master_lost);
-        let commanded = if self.homing.is_active() {
-            self.step_homing(&observation, inputs, permit)
+        // Homing goes by the sources, which go on from where it ends: what they said last is the setpoint of either.
+        let is_homing = self.homing.is_active();
+        if is_homing {
+            self.step_homing(&observation, inputs, permit);
         } else {
-            self.sources.step(tick, reference, permit)
-        };
+            self.sources.step(tick, reference, permit);
+        }
         let outputs = &mut self.outputs;
         outputs.retract = self.sources.retract();
-        outputs.moving = self.sources.is_moving() || self.homing.is_active();
-        outputs.setpoint = self.compensation.step(&commanded);
+        outputs.moving = self.sources.is_moving() || is_homing && self.homing.is_active();
+        outputs.setpoint = self.compensation.step(self.sources.last());
         let active = self.output.active_limits();
-        let estimate = self.estimators.fed_back(&outputs.estimate);
+        let estimate = self.estimators.fed_back();
         let mut demand = self
             .controller
             .step(&outputs.setpoint, position, estimate, active);
         outputs.following_error = demand.following_error;
-        if is_experiment && let Some(experiment) = &mut self.experiment {
-            demand.command = experiment.step(&Seen {
-                observation: &observation,
-                permit,
-                demand: demand.command,
-                in_force: self.output.command(),
-            });
-            outputs.moving |= experiment.ending().is_none();
+        if self.has_experiment {
+            self.step_experiment(&observation, permit, &mut demand.command);
         }
+        let outputs = &self.outputs;
+        let homing_trouble = if is_homing {
+            self.homing.trouble()
+        } else {
+            None
+        };
 
         let permit = self.supervisor.review(&Review {
             permit,
             tick,
             moving: outputs.moving,
-            trouble: self.sources.trouble().or(self.homing.trouble()),
+            trouble: self.sources.trouble().or(homing_trouble),
             lines,
             observation: &observation,
             estimate: &outputs.estimate,
@@ -165,17 +164,17 @@ impl<'m> Axis<'m> {
             active,
             open_loop,
         });
-        if is_experiment && let Some(experiment) = &mut self.experiment {
-            experiment.review(permit);
+        if self.has_experiment {
+            self.review_experiment(permit);
         }
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
         let outputs = &mut self.outputs;
-        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
+            outputs.moving = false;
             self.output.off()
         };
         outputs.limits = self.output.active_limits();
@@ -185,9 +184,9 @@ impl<'m> Axis<'m> {
         outputs.fault = self.supervisor.fault();
         outputs.warnings = self.supervisor.warnings();
         outputs.refused = self.supervisor.is_refused();
-        let is_index_right = self.homing.check_index(&observation);
-        if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
-            self.lose_place();
+        let is_faulted = outputs.fault.is_some();
+        if observation.has_index() | inputs.lines.encoder_lost | is_faulted {
+            self.watch_place(&observation, inputs.lines.encoder_lost);
         }
         let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);

@@ -136,7 +136,7 @@ pub struct Estimators {
     reads_edges: bool,
     /// The second estimator is shown, and the first one serves all else: what a second one is mostly for.
     is_display_alone: bool,
-    /// What the feedback gets, where it is not what is shown.
+    /// What the feedback gets.
     feedback: Estimate,
     first: Estimator,
     second: Option<Estimator>,
@@ -184,7 +184,8 @@ impl Estimators {
             evidence.sample = evidence.edges.sample(evidence.observation);
         }
         let Some(second) = &mut self.second else {
-            self.first.update_into(evidence, display);
+            self.first.update_into(evidence, &mut self.feedback);
+            *display = self.feedback;
             return;
         };
         if self.is_display_alone {
@@ -223,31 +224,20 @@ impl Estimators {
         *display = *of(self.paths.display);
     }
 
-    /// What the feedback gets, when `display` is shown: an estimate, and the position for the loop; `count` is the middle
-    /// of the count.
+    /// The position for the loop; `count` is the middle of the count.
     #[inline]
     #[must_use]
-    pub fn feedback<'e>(
-        &'e self,
-        display: &'e Estimate,
-        count: Position,
-    ) -> (&'e Estimate, Position) {
-        let estimate = self.fed_back(display);
-        let position = match self.paths.position {
+    pub const fn position(&self, count: Position) -> Position {
+        match self.paths.position {
             PositionFeedback::Count => count,
-            PositionFeedback::Estimate => estimate.position,
-        };
-        (estimate, position)
+            PositionFeedback::Estimate => self.feedback.position,
+        }
     }
 
-    /// The estimate of [`Self::feedback`] alone.
+    /// The estimate for the loop.
     #[inline]
     #[must_use]
-    pub const fn fed_back<'e>(&'e self, display: &'e Estimate) -> &'e Estimate {
-        if self.second.is_some() {
-            &self.feedback
-        } else {
-            display
-        }
+    pub const fn fed_back(&self) -> &Estimate {
+        &self.feedback
     }
 }

@@ -236,23 +236,30 @@ impl Sources {
     /// The setpoint of tick `tick`, as far as `permit` lets a source move the axis. A stop begins in the tick in
     /// which it is ordered, or in which the source is found lost, from the setpoint before, and goes on to its end whatever is
     /// ordered then, except to hold, which ends it where it is; all sources are dropped by it.
-    pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> Setpoint {
+    // Planned moves first, and short: the others have budgets of their own.
+    #[inline]
+    pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> &Setpoint {
         self.trouble = None;
-        // Planned moves first, and short: the others have budgets of their own.
         let is_planned = self.selected == Source::Trajectory && !self.is_threading();
-        self.last = if permit == Permit::Follow && !self.stopping {
-            if is_planned {
-                self.last = self.trajectory.step(tick);
-                return self.last;
-            }
+        if permit == Permit::Follow && !self.stopping && is_planned {
+            self.last = self.trajectory.step(tick);
+        } else {
+            self.step_else(tick, reference, permit);
+        }
+        &self.last
+    }
+
+    /// Anything but a planned move that goes on.
+    #[inline(never)]
+    fn step_else(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) {
+        self.last = if permit != Permit::Follow || self.stopping {
+            self.stop(tick, reference, permit)
+        } else {
             match self.follow(tick, reference) {
                 Ok(setpoint) => setpoint,
                 Err(fault) => self.lose(tick, fault),
             }
-        } else {
-            self.stop(tick, reference, permit)
         };
-        self.last
     }
 
     #[inline(never)]

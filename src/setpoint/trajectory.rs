@@ -153,6 +153,7 @@ impl Trajectory {
     }
 
     /// The setpoint of tick `now`.
+    #[inline]
     pub fn step(&mut self, now: u32) -> Setpoint {
         if self.remaining_ticks != 0 {
             self.advance();
@@ -163,6 +164,7 @@ impl Trajectory {
         self.setpoint()
     }
 
+    #[inline]
     fn advance(&mut self) {
         let Phase {
             position_step,
