@@ -21,7 +21,6 @@ use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence, Variances};
-use crate::hal::Lines;
 use crate::homing::Homing;
 use crate::identification::experiment::Experiment;
 use crate::output::Output;
@@ -102,8 +101,13 @@ impl<'m> Axis<'m> {
         let position = self.estimators.position(observation.position());
 
         let told = self.output.command();
-        let mut left = Lines::default();
-        let lines = self.homing.without_limit_left(&inputs.lines, &mut left);
+        let left;
+        let lines = if self.homing.is_active() {
+            left = self.homing.leave_limit(inputs.lines);
+            &left
+        } else {
+            &inputs.lines
+        };
         let permit = self.supervisor.permit(&Situation {
             tick,
             enable: inputs.enable,
@@ -125,14 +129,15 @@ impl<'m> Axis<'m> {
             .read_master(reference.master.as_ref(), lines.master_lost);
         // Homing goes by the sources, which go on from where it ends: what they said last is the setpoint of either.
         let is_homing = self.homing.is_active();
-        if is_homing {
+        let moving = if is_homing {
             self.step_homing(&observation, inputs, permit);
+            self.sources.is_moving() || self.homing.is_active()
         } else {
-            self.sources.step(tick, reference, permit);
-        }
+            self.sources.step(tick, reference, permit)
+        };
         let outputs = &mut self.outputs;
         outputs.retract = self.sources.retract();
-        outputs.moving = self.sources.is_moving() || is_homing && self.homing.is_active();
+        outputs.moving = moving;
         outputs.setpoint = self.compensation.step(self.sources.last());
         let active = self.output.active_limits();
         let estimate = self.estimators.fed_back();

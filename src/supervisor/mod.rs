@@ -108,7 +108,7 @@ impl Supervisor {
             && situation.enable
             && (situation.illegal | situation.missed_ticks) == 0
             && self.reported.is_none()
-            && is_well(situation.lines)
+            && situation.lines.is_well()
             && self
                 .watch
                 .readback
@@ -288,10 +288,4 @@ impl Supervisor {
     pub fn note_context(&mut self, context: &Context) {
         self.latch.note(context);
     }
-}
-
-/// True if no line stops the axis: limit switches are judged with the motion.
-#[inline(always)]
-const fn is_well(lines: &Lines) -> bool {
-    lines.drive_ready & !(lines.drive_fault | lines.encoder_lost | lines.emergency_stop)
 }

@@ -63,7 +63,7 @@ impl Watch {
                 || told.unsigned_abs() <= loss.level.unsigned_abs())
             && velocity.unsigned_abs() <= config.overspeed.unsigned_abs()
             && self.index.way(observation.count).unsigned_abs() <= config.index.within
-            && !(self.busy | lines.limit_low | lines.limit_high | active.high | active.low)
+            && !(self.busy | lines.is_at_limit() | active.is_limited())
             && !observation.has_index()
     }
 
