@@ -60,8 +60,8 @@ impl Watch {
             .is_quiet(&config.following, error, is_at_rest, review.tick)
             && (delta == 0 || delta ^ told >= 0)
             && (delta.unsigned_abs() >= loss.counts
-                || told.unsigned_abs() <= loss.level.unsigned_abs())
-            && velocity.unsigned_abs() <= config.overspeed.unsigned_abs()
+                || told.unsigned_abs() <= loss.level.cast_unsigned())
+            && velocity.unsigned_abs() <= config.overspeed.cast_unsigned()
             && self.index.way(observation.count).unsigned_abs() <= config.index.within
             && !(self.busy | lines.is_at_limit() | active.is_limited())
             && !observation.has_index()

@@ -141,26 +141,21 @@ impl Estimator {
             return;
         }
         let steps = self.advance(elapsed);
-        let sample = match sample {
-            Some(sample) => Some(self.on_grid(observation, elapsed, sample)),
-            None => {
-                self.silence.lengthen(elapsed);
-                None
-            }
-        };
         let base = self.count.wrapping_shl(window::PLACE_FRAC);
-        let regular = self.window.tick(&self.config, steps, base, sample);
-        if self.is_at_rest() {
-            self.rest(observation, estimate);
+        let Some(sample) = sample else {
+            self.silence.lengthen(elapsed);
+            self.window.tick(&self.config, steps, base, None);
+            self.answer_anywhere(observation, estimate);
             return;
-        }
-        self.primed = None;
-        match regular {
-            Some(step) => {
+        };
+        let sample = self.on_grid(observation, elapsed, sample);
+        match (self.window).tick(&self.config, steps, base, Some(sample)) {
+            Some(step) if !self.is_at_rest() => {
+                self.primed = None;
                 let found = Found::regular(&self.config, &self.window, step, self.now());
                 self.answer(observation, &found, estimate);
             }
-            None => self.answer_anywhere(observation, estimate),
+            _ => self.answer_anywhere(observation, estimate),
         }
     }
 
@@ -181,9 +176,14 @@ impl Estimator {
         spread.variances(self.config.answer, self.motion.newest, noise)
     }
 
-    /// Samples wherever they stand.
+    /// Samples wherever they stand, if they tell a motion.
     #[inline(never)]
     fn answer_anywhere(&mut self, observation: &Observation<'_>, estimate: &mut Estimate) {
+        if self.is_at_rest() {
+            self.rest(observation, estimate);
+            return;
+        }
+        self.primed = None;
         let found = Found::anywhere(&self.window, self.motion, self.now());
         self.answer(observation, &found, estimate);
     }

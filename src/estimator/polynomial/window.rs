@@ -94,7 +94,7 @@ impl Window {
 
     /// Goes on by a tick: the origin moves by `steps` of the grid and to the place `base`, a sample comes and old ones go.
     /// Gives the step of the newest sample if a full window of them stands one a tick.
-    #[inline]
+    #[inline(always)]
     pub fn tick(
         &mut self,
         config: &Config,
