@@ -133,7 +133,7 @@ impl<'m> Axis<'m> {
             self.step_homing(&observation, inputs, permit);
             self.sources.is_moving() || self.homing.is_active()
         } else {
-            self.sources.step(tick, reference, permit)
+            self.sources.advance(tick, reference, permit)
         };
         let outputs = &mut self.outputs;
         outputs.retract = self.sources.retract();

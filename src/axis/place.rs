@@ -19,7 +19,7 @@ impl<'m> Axis<'m> {
         if permit < Permit::Follow {
             self.homing.abort();
             let tick = self.tick.wrapping_sub(1);
-            self.sources.step_else(tick, &inputs.reference, permit);
+            self.sources.advance_else(tick, &inputs.reference, permit);
             return;
         }
         let setpoint = self.homing.step(&Sight {

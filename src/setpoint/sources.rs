@@ -236,25 +236,29 @@ impl Sources {
     /// The setpoint of tick `tick`, as far as `permit` lets a source move the axis. A stop begins in the tick in
     /// which it is ordered, or in which the source is found lost, from the setpoint before, and goes on to its end whatever is
     /// ordered then, except to hold, which ends it where it is; all sources are dropped by it.
-    ///
-    /// Gives true while a motion is commanded; the setpoint is the [last](Self::last) one.
+    pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> Setpoint {
+        self.advance(tick, reference, permit);
+        self.last
+    }
+
+    /// The same, with the setpoint left in [`Self::last`]; gives true while a motion is commanded.
     // Planned moves first, and short: the others have budgets of their own.
     #[inline(always)]
-    pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> bool {
+    pub(crate) fn advance(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> bool {
         let is_planned = self.selected == Source::Trajectory && !self.is_threading();
         if permit == Permit::Follow && !self.stopping && is_planned {
             self.trouble = None;
             self.last = self.trajectory.step(tick);
             self.trajectory.is_moving()
         } else {
-            self.step_else(tick, reference, permit);
+            self.advance_else(tick, reference, permit);
             self.is_moving()
         }
     }
 
     /// The same, where it is likely anything but a planned move that goes on.
     #[inline(never)]
-    pub fn step_else(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) {
+    pub(crate) fn advance_else(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) {
         self.trouble = None;
         self.last = if permit != Permit::Follow || self.stopping {
             self.stop(tick, reference, permit)
