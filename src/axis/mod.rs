@@ -15,7 +15,7 @@ pub use request::{Refused, Request};
 
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::compensation::Compensation;
-use crate::controller::Controller;
+use crate::controller::{Controller, Demand};
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
@@ -140,11 +140,8 @@ impl<'m> Axis<'m> {
         outputs.moving = moving;
         outputs.setpoint = self.compensation.step(self.sources.last());
         let active = self.output.active_limits();
-        let estimate = self.estimators.fed_back();
-        let mut demand = self
-            .controller
-            .step(&outputs.setpoint, position, estimate, active);
-        outputs.following_error = demand.following_error;
+        let mut demand = self.control(position);
+        self.outputs.following_error = demand.following_error;
         if self.has_experiment {
             self.step_experiment(&observation, permit, &mut demand.command);
         }
@@ -196,6 +193,15 @@ impl<'m> Axis<'m> {
         let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);
         outputs
+    }
+
+    /// The control law. A function of its own: so it has the registers to itself.
+    #[inline(never)]
+    fn control(&mut self, position: Position) -> Demand {
+        let active = self.output.active_limits();
+        let estimate = self.estimators.fed_back();
+        self.controller
+            .step(&self.outputs.setpoint, position, estimate, active)
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
