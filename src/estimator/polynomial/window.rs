@@ -37,10 +37,11 @@ pub struct Window {
     origin: i32,
     base: i32,
     regularity: Regularity,
-    /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts.
+    /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts; so are steps and
+    /// edges.
     places: [i32; 2 * CAPACITY],
     steps: [i32; 2 * CAPACITY],
-    edges_of: [u16; CAPACITY],
+    edges_of: [u16; 2 * CAPACITY],
 }
 
 /// How many of the newest samples came one a tick, at one and the same step from the origin.
@@ -55,7 +56,7 @@ impl Window {
         Self {
             places: [0; 2 * CAPACITY],
             steps: [0; 2 * CAPACITY],
-            edges_of: [0; CAPACITY],
+            edges_of: [0; 2 * CAPACITY],
             newest: 0,
             count: 0,
             edges: 0,
@@ -179,8 +180,10 @@ impl Window {
                 *at = step;
             }
         }
-        if let Some(edges) = self.edges_of.get_mut(first) {
-            *edges = sample.edges as u16;
+        for slot in [first, second] {
+            if let Some(edges) = self.edges_of.get_mut(slot) {
+                *edges = sample.edges as u16;
+            }
         }
     }
 
@@ -237,12 +240,14 @@ impl Window {
     /// Sums over all samples.
     #[inline(never)]
     pub fn sums(&self) -> Sums {
-        let steps = self.steps.get(self.newest..).unwrap_or(&[]);
+        let window = self.newest..self.newest.wrapping_add(self.count);
+        let steps = self.steps.get(window.clone()).unwrap_or(&[]);
+        let edges = self.edges_of.get(window.clone()).unwrap_or(&[]);
+        let places = self.places.get(window).unwrap_or(&[]);
+        let (origin, base) = (self.origin, self.base);
         let mut sums = Sums::default();
-        for ((place, step), age) in self.places().zip(steps).zip(0..) {
-            let slot = self.newest.wrapping_add(age) & (CAPACITY - 1);
-            let edges = self.edges_of.get(slot).copied().unwrap_or(0);
-            sums.add(step.wrapping_sub(self.origin), place, edges);
+        for ((step, place), &edges) in steps.iter().zip(places).zip(edges) {
+            sums.add(step.wrapping_sub(origin), place.wrapping_sub(base), edges);
         }
         sums
     }
