@@ -70,6 +70,8 @@ pub struct EdgeScale {
     max_clocks: u32,
     /// Clocks in a tick; 0 where they are not a whole number to 2⁻²⁴ of a tick.
     clocks_per_tick: u32,
+    /// Those as a span.
+    tick: Span,
 }
 
 impl EdgeScale {
@@ -86,11 +88,16 @@ impl EdgeScale {
         let parts_per_tick = libm::ldexp(clocks_per_tick, part_bits.cast_signed());
         let whole = libm::round(clocks_per_tick);
         let is_whole = (whole - clocks_per_tick).abs() <= libm::ldexp(clocks_per_tick, -24);
-        Ok(Self {
+        let scale = Self {
             clocks_per_tick: if is_whole { whole as u32 } else { 0 },
+            tick: Span::ZERO,
             part_bits,
             ticks_per_part: libm::round(libm::ldexp(1.0, 60) / parts_per_tick) as u32,
             max_clocks: (clocks_per_tick * f64::from(MAX_SPAN_TICKS) * (1.0 - 1e-9)) as u32,
+        };
+        Ok(Self {
+            tick: scale.span(scale.clocks_per_tick),
+            ..scale
         })
     }
 
@@ -260,7 +267,11 @@ impl<'m> EdgeReader<'m> {
 
     /// Time from the previous sampling instant to this one.
     #[must_use]
+    #[inline]
     pub const fn elapsed(&self, observation: &Observation<'_>) -> Span {
+        if self.is_punctual(observation) {
+            return self.config.scale.tick;
+        }
         self.config.scale.span(observation.elapsed)
     }
 

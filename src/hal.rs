@@ -51,7 +51,9 @@ pub struct Latch {
 
 /// Levels of the board's discrete inputs at the sampling instant, true where the name says so whatever the
 /// polarity of the wire. The default is a machine at which all is well.
+// In this order four of them are a word, and so are compared as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C, align(4))]
 pub struct Lines {
     /// The drive reports that it is ready to follow its command.
     pub drive_ready: bool,
@@ -59,16 +61,38 @@ pub struct Lines {
     pub drive_fault: bool,
     /// A line receiver of the encoder sees no valid differential signal.
     pub encoder_lost: bool,
-    /// The same of the second encoder (spindle, master).
-    pub master_lost: bool,
+    /// The emergency-stop chain is open. It removes power by itself; this only tells of it.
+    pub emergency_stop: bool,
     /// The carriage is on the limit switch at the low end.
     pub limit_low: bool,
     /// The carriage is on the limit switch at the high end.
     pub limit_high: bool,
     /// The carriage is on the home switch.
     pub home: bool,
-    /// The emergency-stop chain is open. It removes power by itself; this only tells of it.
-    pub emergency_stop: bool,
+    /// The same of the second encoder (spindle, master) as [`Self::encoder_lost`] of the first.
+    pub master_lost: bool,
+}
+
+impl Lines {
+    /// True if no line stops the axis: limit switches are judged with the motion.
+    #[must_use]
+    #[inline(always)]
+    pub const fn is_well(&self) -> bool {
+        let lines = [
+            self.drive_ready as u8,
+            self.drive_fault as u8,
+            self.encoder_lost as u8,
+            self.emergency_stop as u8,
+        ];
+        u32::from_le_bytes(lines) == 1
+    }
+
+    /// True on a limit switch.
+    #[must_use]
+    #[inline(always)]
+    pub const fn is_at_limit(&self) -> bool {
+        u16::from_le_bytes([self.limit_low as u8, self.limit_high as u8]) != 0
+    }
 }
 
 impl Default for Lines {
@@ -77,11 +101,11 @@ impl Default for Lines {
             drive_ready: true,
             drive_fault: false,
             encoder_lost: false,
-            master_lost: false,
+            emergency_stop: false,
             limit_low: false,
             limit_high: false,
             home: false,
-            emergency_stop: false,
+            master_lost: false,
         }
     }
 }

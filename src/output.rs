@@ -35,6 +35,15 @@ pub struct ActiveLimits {
     pub slew: bool,
 }
 
+impl ActiveLimits {
+    /// The demand is beyond what may be put out.
+    #[must_use]
+    #[inline(always)]
+    pub const fn is_limited(self) -> bool {
+        u16::from_le_bytes([self.high as u8, self.low as u8]) != 0
+    }
+}
+
 /// The output stage; remembers what it put out.
 #[derive(Clone, Debug)]
 pub struct Output {

@@ -4,7 +4,7 @@ use leadscrew::capture::{CaptureHealth, Unwrapper};
 use leadscrew::edges::{EdgeConfig, EdgeReader};
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::encoder_map::tie::{MapHealth, MapState};
-use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, Evidence};
+use leadscrew::estimator::{Estimate, Estimator, EstimatorConfig, Evidence, Variances};
 use leadscrew::hal::Capture;
 use leadscrew::units::Command;
 
@@ -51,6 +51,13 @@ impl<'m> Listening<'m> {
             take(index, estimator.update(&evidence));
         }
         observation.count
+    }
+
+    /// How uncertain the newest estimate of estimator `index` is; `None` for one that is not there.
+    #[must_use]
+    pub fn variances(&self, index: usize) -> Option<Variances> {
+        let estimator = self.estimators.get(index)?;
+        Some(estimator.variances(self.edges.noise()))
     }
 
     /// How far the encoder map can be used; `None` without one.

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use comfy_table::{CellAlignment, Table, presets};
 use leadscrew::capture::{CaptureHealth, MAX_DELTA};
-use leadscrew::estimator::{Estimate, EstimatorConfig, Lags};
+use leadscrew::estimator::{Estimate, EstimatorConfig, Lags, Variances};
 use leadscrew::units::{Lag, Variance};
 use serde::Serialize;
 
@@ -183,6 +183,7 @@ impl<W: Write> CsvReport<W> {
         tick: u64,
         count: i64,
         estimate: &Estimate,
+        variances: &Variances,
         further: &[f64],
     ) -> csv::Result<()> {
         let shared = [
@@ -192,8 +193,8 @@ impl<W: Write> CsvReport<W> {
             estimate.lags.position.to_num(),
             estimate.lags.velocity.to_num(),
             estimate.lags.acceleration.to_num(),
-            sigma(estimate.variances.velocity),
-            sigma(estimate.variances.acceleration),
+            sigma(variances.velocity),
+            sigma(variances.acceleration),
         ];
         self.writer.write_field(tick.to_string())?;
         self.writer

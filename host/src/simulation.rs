@@ -3,7 +3,7 @@
 use leadscrew::axis::Outputs;
 use leadscrew::capture::CaptureHealth;
 use leadscrew::encoder_map::EncoderMap;
-use leadscrew::estimator::{Estimate, EstimatorConfig};
+use leadscrew::estimator::{Estimate, EstimatorConfig, Variances};
 use leadscrew::hal::Encoder;
 use leadscrew_hal_mock::arc::State;
 use leadscrew_hal_mock::machine::MachineParams;
@@ -36,6 +36,8 @@ pub struct RunSpec<'m> {
 pub struct Tick {
     /// What the axis put out.
     pub outputs: Outputs,
+    /// How uncertain its estimate is.
+    pub variances: Variances,
     /// Carriage, d.
     pub carriage: f64,
     /// Reading of the tachogenerator, d/tick.
@@ -123,6 +125,7 @@ impl RunSpec<'_> {
             watch.note(&outputs.estimate, tachogenerator);
             ticks.push(Tick {
                 outputs,
+                variances: simulation.axis.variances(),
                 carriage: state.carriage.position,
                 tachogenerator,
             });

@@ -3,9 +3,11 @@
 use core::fmt;
 
 use super::Axis;
-use crate::identification::experiment::Experiment;
+use crate::capture::Observation;
+use crate::identification::experiment::{Experiment, Seen};
 use crate::identification::program::Program;
-use crate::supervisor::State;
+use crate::supervisor::{Permit, State};
+use crate::units::Command;
 
 /// An axis slower than this power of two below its largest speed is at rest: an offset of the drive moves it,
 /// until it is identified.
@@ -35,6 +37,7 @@ impl Axis<'_> {
             return Err(StartError::NotAtRest);
         }
         self.experiment = Some(Experiment::new(*program));
+        self.has_experiment = true;
         Ok(())
     }
 
@@ -54,6 +57,35 @@ impl Axis<'_> {
     /// Gives the axis back to its loop, which holds it where it stands. One under way is dropped.
     pub fn release_experiment(&mut self) {
         self.experiment = None;
+        self.has_experiment = false;
+    }
+
+    /// A tick of the experiment: it says what the drive is told instead of `command`, or with it.
+    #[inline(never)]
+    pub(super) fn step_experiment(
+        &mut self,
+        observation: &Observation<'_>,
+        permit: Permit,
+        command: &mut Command,
+    ) {
+        if let Some(experiment) = &mut self.experiment {
+            *command = experiment.step(&Seen {
+                observation,
+                errors: self.edges.last_errors(),
+                permit,
+                demand: *command,
+                in_force: self.output.command(),
+            });
+            self.outputs.moving |= experiment.ending().is_none();
+        }
+    }
+
+    /// Ends the experiment where its permit was taken back.
+    #[inline(never)]
+    pub(super) fn review_experiment(&mut self, permit: Permit) {
+        if let Some(experiment) = &mut self.experiment {
+            experiment.review(permit);
+        }
     }
 
     /// True while an experiment keeps the loop open.

@@ -8,8 +8,6 @@ mod reconfigure;
 mod request;
 mod sources;
 
-use place::loses_place;
-
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
@@ -17,15 +15,14 @@ pub use request::{Refused, Request};
 
 use crate::capture::{CaptureHealth, Unwrapper};
 use crate::compensation::Compensation;
-use crate::controller::Controller;
+use crate::controller::{Controller, Demand};
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
 use crate::estimator::paths::Estimators;
-use crate::estimator::{Estimator, Evidence};
-use crate::hal::Lines;
+use crate::estimator::{Estimator, Evidence, Variances};
 use crate::homing::Homing;
-use crate::identification::experiment::{Experiment, Seen};
+use crate::identification::experiment::Experiment;
 use crate::output::Output;
 use crate::params::AxisConfig;
 use crate::setpoint::sources::Sources;
@@ -42,6 +39,8 @@ pub struct Axis<'m> {
     /// The tick that comes next.
     tick: u32,
     output: Output,
+    /// There is an experiment: itself it is a long way off in memory.
+    has_experiment: bool,
     /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
     compensation: Compensation<'m>,
@@ -70,6 +69,7 @@ impl<'m> Axis<'m> {
             controller: Controller::new(config.controller),
             output: Output::new(config.output),
             experiment: None,
+            has_experiment: false,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -98,15 +98,18 @@ impl<'m> Axis<'m> {
             command,
         };
         self.estimators.update(&mut evidence, &mut outputs.estimate);
-        let (_, position) = self
-            .estimators
-            .feedback(&outputs.estimate, observation.position());
+        let position = self.estimators.position(observation.position());
 
-        let estimate = self.estimators.fed_back(&outputs.estimate);
+        let estimate = self.estimators.fed_back();
         self.controller.note(observation.delta, command, estimate);
         let told = self.output.command();
-        let mut left = Lines::default();
-        let lines = self.homing.without_limit_left(&inputs.lines, &mut left);
+        let left;
+        let lines = if self.homing.is_active() {
+            left = self.homing.leave_limit(inputs.lines);
+            &left
+        } else {
+            &inputs.lines
+        };
         let permit = self.supervisor.permit(&Situation {
             tick,
             enable: inputs.enable,
@@ -119,46 +122,43 @@ impl<'m> Axis<'m> {
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
-        // Asked once: the answer is a long way off in memory.
-        let is_experiment = self.experiment.is_some();
-        let open_loop = is_experiment && self.is_open_loop();
+        let open_loop = self.has_experiment && self.is_open_loop();
         if open_loop || !(self.supervisor.is_in_loop() && permit > Permit::ZeroVolts) {
             self.begin(position);
         }
         let reference = &inputs.reference;
         self.sources
             .read_master(reference.master.as_ref(), lines.master_lost);
-        let commanded = if self.homing.is_active() {
-            self.step_homing(&observation, inputs, permit)
+        // Homing goes by the sources, which go on from where it ends: what they said last is the setpoint of either.
+        let is_homing = self.homing.is_active();
+        let moving = if is_homing {
+            self.step_homing(&observation, inputs, permit);
+            self.sources.is_moving() || self.homing.is_active()
         } else {
-            self.sources.step(tick, reference, permit)
+            self.sources.advance(tick, reference, permit)
         };
         let outputs = &mut self.outputs;
         outputs.retract = self.sources.retract();
-        outputs.moving = self.sources.is_moving() || self.homing.is_active();
-        outputs.setpoint = self.compensation.step(&commanded);
+        outputs.moving = moving;
+        outputs.setpoint = self.compensation.step(self.sources.last());
         let active = self.output.active_limits();
-        let estimate = self.estimators.fed_back(&outputs.estimate);
-        let mut demand = self
-            .controller
-            .step(&outputs.setpoint, position, estimate, active);
-        outputs.following_error = demand.following_error;
-        if is_experiment && let Some(experiment) = &mut self.experiment {
-            demand.command = experiment.step(&Seen {
-                observation: &observation,
-                errors: self.edges.last_errors(),
-                permit,
-                demand: demand.command,
-                in_force: self.output.command(),
-            });
-            outputs.moving |= experiment.ending().is_none();
+        let mut demand = self.control(position);
+        self.outputs.following_error = demand.following_error;
+        if self.has_experiment {
+            self.step_experiment(&observation, permit, &mut demand.command);
         }
+        let outputs = &self.outputs;
+        let homing_trouble = if is_homing {
+            self.homing.trouble()
+        } else {
+            None
+        };
 
         let permit = self.supervisor.review(&Review {
             permit,
             tick,
             moving: outputs.moving,
-            trouble: self.sources.trouble().or(self.homing.trouble()),
+            trouble: self.sources.trouble().or(homing_trouble),
             lines,
             observation: &observation,
             estimate: &outputs.estimate,
@@ -168,17 +168,17 @@ impl<'m> Axis<'m> {
             active,
             open_loop,
         });
-        if is_experiment && let Some(experiment) = &mut self.experiment {
-            experiment.review(permit);
+        if self.has_experiment {
+            self.review_experiment(permit);
         }
         if self.supervisor.is_context_due() {
             self.note_context(position, told);
         }
         let outputs = &mut self.outputs;
-        outputs.moving &= permit > Permit::ZeroVolts;
         outputs.command = if permit > Permit::ZeroVolts {
             self.output.step(demand.command)
         } else {
+            outputs.moving = false;
             self.output.off()
         };
         outputs.limits = self.output.active_limits();
@@ -188,13 +188,22 @@ impl<'m> Axis<'m> {
         outputs.fault = self.supervisor.fault();
         outputs.warnings = self.supervisor.warnings();
         outputs.refused = self.supervisor.is_refused();
-        let is_index_right = self.homing.check_index(&observation);
-        if inputs.lines.encoder_lost || !is_index_right || outputs.fault.is_some_and(loses_place) {
-            self.lose_place();
+        let is_faulted = outputs.fault.is_some();
+        if observation.has_index() | inputs.lines.encoder_lost | is_faulted {
+            self.watch_place(&observation, inputs.lines.encoder_lost);
         }
         let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);
         outputs
+    }
+
+    /// The control law. A function of its own: so it has the registers to itself.
+    #[inline(never)]
+    fn control(&mut self, position: Position) -> Demand {
+        let active = self.output.active_limits();
+        let estimate = self.estimators.fed_back();
+        self.controller
+            .step(&self.outputs.setpoint, position, estimate, active)
     }
 
     /// Stands where the axis is, with nothing remembered: off, or about to come under control.
@@ -298,6 +307,12 @@ impl<'m> Axis<'m> {
     #[must_use]
     pub const fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// How uncertain the estimate of the last tick is.
+    #[must_use]
+    pub fn variances(&self) -> Variances {
+        self.estimators.variances(self.edges.noise())
     }
 
     /// Ticks from queueing a motion from rest to its start, at least 1, that the drive needs to be ready for it: its delay,

@@ -4,7 +4,6 @@ use super::{Axis, Inputs};
 use crate::capture::Observation;
 use crate::compensation::{Compensation, ScrewTable, TableRefused};
 use crate::homing::{HomeRefused, Homing, Sight};
-use crate::setpoint::Setpoint;
 use crate::supervisor::{Fault, Permit, State};
 use crate::units::Position;
 
@@ -16,12 +15,12 @@ impl<'m> Axis<'m> {
         observation: &Observation<'_>,
         inputs: &Inputs<'_>,
         permit: Permit,
-    ) -> Setpoint {
+    ) {
         if permit < Permit::Follow {
             self.homing.abort();
-            return self
-                .sources
-                .step(self.tick.wrapping_sub(1), &inputs.reference, permit);
+            let tick = self.tick.wrapping_sub(1);
+            self.sources.advance_else(tick, &inputs.reference, permit);
+            return;
         }
         let setpoint = self.homing.step(&Sight {
             observation,
@@ -30,7 +29,6 @@ impl<'m> Axis<'m> {
         });
         self.sources.take_over(&setpoint);
         self.count_from(self.homing.origin());
-        setpoint
     }
 
     /// Begins homing with the next tick. The origin of before is given up, and with it, by its slew, the
@@ -78,9 +76,18 @@ impl<'m> Axis<'m> {
         self.count_from(origin);
     }
 
-    /// The place of the axis is not known any more.
+    /// Whether the place is still known: after an index, without the encoder's signals, and while a fault is latched.
     #[cold]
-    pub(super) fn lose_place(&mut self) {
+    #[inline(never)]
+    pub(super) fn watch_place(&mut self, observation: &Observation<'_>, encoder_lost: bool) {
+        let is_index_right = self.homing.check_index(observation);
+        if encoder_lost || !is_index_right || self.outputs.fault.is_some_and(loses_place) {
+            self.lose_place();
+        }
+    }
+
+    /// The place of the axis is not known any more.
+    fn lose_place(&mut self) {
         self.homing.lose_origin();
         self.count_from(None);
     }
@@ -95,7 +102,7 @@ impl<'m> Axis<'m> {
 }
 
 /// True for a fault after which the count may not tell the place any more.
-pub(super) const fn loses_place(fault: Fault) -> bool {
+const fn loses_place(fault: Fault) -> bool {
     matches!(
         fault,
         Fault::SignalLoss

@@ -35,6 +35,7 @@ pub use config::{CompensationParams, Config, TableRefused};
 pub use table::{ScrewError, ScrewPoint, ScrewTable, Stretch, TableError};
 
 use config::LEAD_FRAC;
+use table::Here;
 
 use crate::setpoint::Setpoint;
 use crate::units::{Acceleration, Position, Velocity};
@@ -68,8 +69,14 @@ pub struct Compensation<'m> {
     table: Option<ScrewTable<'m>>,
     /// The stretch of the table used last.
     stretch: usize,
+    /// The same with the backlash, as table, origin and heading have it; see [`Self::look_anew`].
+    here: Option<Here>,
+    /// Half the backlash by the heading, Q12.20 d; 0 without an origin.
+    take_up: i32,
     /// Raw position of the zero of machine coordinates, Q48.16 d, once known.
     origin: Option<i64>,
+    /// The same, or 0.
+    zero: i64,
     heading: Heading,
     /// Farthest that the setpoint went in its direction, low word of Q48.16 d.
     farthest: i32,
@@ -94,7 +101,10 @@ impl<'m> Compensation<'m> {
             config,
             table: None,
             stretch: 0,
+            here: None,
+            take_up: 0,
             origin: None,
+            zero: 0,
             heading: Heading::Forward,
             farthest: 0,
             limited: 0,
@@ -109,6 +119,7 @@ impl<'m> Compensation<'m> {
     pub fn reconfigure(&mut self, config: Config) {
         self.config = config;
         self.table = self.table.filter(|table| config.check(table).is_ok());
+        self.look_anew();
     }
 
     /// The table in use.
@@ -126,16 +137,16 @@ impl<'m> Compensation<'m> {
             self.config.check(table)?;
         }
         self.table = table;
+        self.look_anew();
         Ok(())
     }
 
     /// The raw position of the zero of machine coordinates becomes known, or is lost. Neither moves the setpoint by a
     /// step.
-    pub const fn set_origin(&mut self, origin: Option<Position>) {
-        self.origin = match origin {
-            Some(origin) => Some(origin.to_bits()),
-            None => None,
-        };
+    pub fn set_origin(&mut self, origin: Option<Position>) {
+        self.origin = origin.map(Position::to_bits);
+        self.zero = self.origin.unwrap_or(0);
+        self.look_anew();
     }
 
     /// The raw position of the zero of machine coordinates, d.
@@ -164,12 +175,11 @@ impl<'m> Compensation<'m> {
     #[must_use]
     #[inline]
     pub fn reported(&self, position: Position) -> Position {
-        let origin = self.origin.unwrap_or(0);
         Position::from_bits(
             position
                 .to_bits()
                 .wrapping_sub(self.amount_as_position())
-                .wrapping_sub(origin),
+                .wrapping_sub(self.zero),
         )
     }
 
@@ -177,13 +187,12 @@ impl<'m> Compensation<'m> {
     /// setpoint that is.
     pub fn rest_at(&mut self, position: Position) -> Position {
         let commanded = position.to_bits().wrapping_sub(self.amount_as_position());
-        self.limited = if let (Some(origin), Some(table)) = (self.origin, &self.table) {
+        if let (Some(_), Some(table)) = (self.origin, &self.table) {
             // Not on time: an axis turned by hand may pass many stretches in a tick.
-            self.stretch = table.find(commanded.wrapping_sub(origin));
-            self.wanted(commanded)
-        } else {
-            self.wanted(commanded)
-        };
+            self.stretch = table.find(commanded.wrapping_sub(self.zero));
+            self.look_anew();
+        }
+        self.limited = self.wanted(commanded);
         self.first = i64::from(self.limited).wrapping_shl(LAG_SHIFT);
         self.second = self.first;
         self.velocity = 0;
@@ -239,27 +248,48 @@ impl<'m> Compensation<'m> {
                 Heading::Forward => Heading::Backward,
                 Heading::Backward => Heading::Forward,
             };
+            self.look_anew();
+        }
+    }
+
+    /// Puts together what the place is looked up in: after any change of table, stretch, origin, heading or backlash.
+    #[cold]
+    #[inline(never)]
+    fn look_anew(&mut self) {
+        let half = self.config.half_backlash;
+        self.take_up = match (self.origin, self.heading) {
+            (None, _) => 0,
+            (Some(_), Heading::Forward) => half,
+            (Some(_), Heading::Backward) => half.wrapping_neg(),
+        };
+        self.here = None;
+        if let (Some(origin), Some(table)) = (self.origin, &self.table) {
+            self.stretch = self.stretch.min(table.points().saturating_sub(2));
+            self.here = table.here(self.stretch, self.heading, origin, self.take_up);
         }
     }
 
     /// What the compensation should be for a carriage at raw position `place`, Q12.20 d.
     #[inline]
     fn wanted(&mut self, place: i64) -> i32 {
-        let Some(origin) = self.origin else {
-            return 0;
+        let Some(here) = &self.here else {
+            return self.take_up;
         };
-        let half = self.config.half_backlash;
-        let take_up = match self.heading {
-            Heading::Forward => half,
-            Heading::Backward => half.wrapping_neg(),
-        };
-        match &self.table {
-            Some(table) => {
-                let place = place.wrapping_sub(origin);
-                take_up.wrapping_add(table.look_up(place, self.heading, &mut self.stretch))
-            }
-            None => take_up,
+        match here.value_within(place) {
+            Some(value) => value,
+            None => self.move_on(place),
         }
+    }
+
+    /// Goes on by a stretch: the compensation is that of its nearer end until it has come to the place.
+    #[cold]
+    #[inline(never)]
+    fn move_on(&mut self, place: i64) -> i32 {
+        if let (Some(here), Some(table)) = (&self.here, &self.table) {
+            self.stretch = table.neighbour(self.stretch, here.is_below(place));
+            self.look_anew();
+        }
+        (self.here).map_or(self.take_up, |here| here.value_at_nearest(place))
     }
 
     /// One tick towards `wanted`; gives the change of velocity, Q4.28 d/tick². Errors stay within ±1 500 d, and so

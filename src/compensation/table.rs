@@ -145,34 +145,38 @@ impl<'m> ScrewTable<'m> {
         self.shortest
     }
 
-    /// Compensation at a place, Q12.20 d. `stretch` is the one that was used last; it goes on by one a call, and
-    /// the compensation is that of its nearer end until it has come to the place.
-    #[inline]
-    pub(super) fn look_up(&self, place: i64, heading: Heading, stretch: &mut usize) -> i32 {
-        let Some(mut here) = self.stretches.get(*stretch) else {
-            *stretch = 0;
-            return 0;
-        };
-        let mut offset = here.offset(place);
-        // Below its start it is large without a sign.
-        if offset.cast_unsigned() > u64::from(here.length.cast_unsigned()) {
-            here = self.next(offset, stretch).unwrap_or(here);
-            offset = here.offset(place).max(0).min(i64::from(here.length));
-        }
-        here.value(offset as i32, heading)
+    /// Stretch number `stretch` as `heading` finds it, with the zero of machine coordinates at `origin` and `take_up`
+    /// (Q12.20 d) on top.
+    pub(super) fn here(
+        &self,
+        stretch: usize,
+        heading: Heading,
+        origin: i64,
+        take_up: i32,
+    ) -> Option<Here> {
+        let stretch = self.stretches.get(stretch)?;
+        let line = *heading.of_pair(&stretch.lines);
+        Some(Here {
+            from: stretch.from.wrapping_add(origin),
+            length: stretch.length,
+            line: Line {
+                value: line.value.wrapping_add(take_up),
+                ..line
+            },
+        })
     }
 
-    /// The stretch after or before, where there is one.
-    #[cold]
-    fn next(&self, offset: i64, stretch: &mut usize) -> Option<&Stretch> {
-        let next = if offset < 0 {
-            stretch.checked_sub(1)?
+    /// Number of the stretch before or after another, or itself at the end of the table.
+    pub(super) const fn neighbour(&self, stretch: usize, is_before: bool) -> usize {
+        if is_before {
+            return stretch.saturating_sub(1);
+        }
+        let after = stretch.saturating_add(1);
+        if after < self.stretches.len() {
+            after
         } else {
-            stretch.checked_add(1)?
-        };
-        let found = self.stretches.get(next)?;
-        *stretch = next;
-        Some(found)
+            stretch
+        }
     }
 
     /// The stretch of a place, by search: outside the tick.
@@ -230,6 +234,40 @@ impl Stretch {
         };
         Ok((stretch, steepest, length))
     }
+}
+
+/// A stretch as one heading finds it, in the raw positions of the setpoint.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Here {
+    /// Start, Q48.16 d.
+    from: i64,
+    /// Q.8 d.
+    length: i32,
+    line: Line,
+}
+
+impl Here {
+    /// Compensation at `place`, Q12.20 d, if it lies within.
+    #[inline]
+    pub const fn value_within(&self, place: i64) -> Option<i32> {
+        let offset = self.offset(place);
+        // Below its start it is large without a sign.
+        if offset.cast_unsigned() > self.length.cast_unsigned() as u64 {
+            return None;
+        }
+        Some(self.value(offset as i32))
+    }
+
+    /// Compensation at `place`, or at the end that is nearer to it.
+    pub fn value_at_nearest(&self, place: i64) -> i32 {
+        let offset = self.offset(place).max(0).min(i64::from(self.length));
+        self.value(offset as i32)
+    }
+
+    /// True if `place` lies below the start.
+    pub const fn is_below(&self, place: i64) -> bool {
+        self.offset(place) < 0
+    }
 
     /// How far `place` lies beyond the start, Q.8 d.
     #[inline]
@@ -242,9 +280,9 @@ impl Stretch {
     /// Compensation at `offset` within the length: |slope| ≤ 0.1 over 2³¹ units adds at most 2²⁸·0.1·2³ in Q.20 and
     /// is bounded by the points' own values.
     #[inline]
-    fn value(&self, offset: i32, heading: Heading) -> i32 {
-        let Line { value, slope } = *heading.of_pair(&self.lines);
-        let rise = i64::from(offset).wrapping_mul(i64::from(slope));
+    const fn value(&self, offset: i32) -> i32 {
+        let Line { value, slope } = self.line;
+        let rise = (offset as i64).wrapping_mul(slope as i64);
         value.wrapping_add(rise.wrapping_shr(RISE_SHIFT) as i32)
     }
 }

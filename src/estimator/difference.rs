@@ -3,6 +3,7 @@
 //! Exact in fixed point; what it lacks is resolution: one discrete a tick.
 
 use super::{Delay, Estimate, Evidence, Lags, Variances};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Acceleration, Lag, Variance, Velocity};
 
 /// There is nothing to choose.
@@ -58,17 +59,22 @@ impl Estimator {
 
     /// Takes what a tick has to tell. An acceleration beyond ±128 d/tick² saturates.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let observation = evidence.observation;
         let delta = observation.delta;
         let change = delta.wrapping_sub(self.previous_delta);
         self.previous_delta = delta;
-        Estimate {
+        *estimate = Estimate {
             position: observation.position(),
             velocity: Velocity::wrapping_from_num(delta),
             acceleration: Acceleration::saturating_from_num(change),
             lags: const { Config.lags() },
-            variances: const { Config.variances() },
-        }
+        };
+    }
+
+    /// How uncertain the newest estimate is: its counts are rounded, and edges tell it nothing.
+    #[must_use]
+    pub const fn variances(&self, _: &EdgeNoise) -> Variances {
+        Config.variances()
     }
 }

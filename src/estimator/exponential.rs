@@ -9,6 +9,7 @@
 //! 3.9e-6 d/tick.
 
 use super::{Delay, Estimate, Evidence, Lags, Quality, Variances, estimate_from};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{RangeError, Velocity, checked};
 
 const STATE_FRAC: u32 = 32;
@@ -96,7 +97,7 @@ impl Estimator {
 
     /// Takes what a tick has to tell.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let observation = evidence.observation;
         let step = i64::from(observation.delta).wrapping_shl(STATE_FRAC);
         let ahead = self.behind.wrapping_add(step);
@@ -104,13 +105,19 @@ impl Estimator {
         let change = velocity.wrapping_sub(self.velocity);
         self.behind = ahead.wrapping_sub(velocity);
         self.velocity = velocity;
-        estimate_from::<STATE_FRAC>(
+        *estimate = estimate_from::<STATE_FRAC>(
             observation,
             self.behind,
             velocity,
             change,
             &self.config.quality,
-        )
+        );
+    }
+
+    /// How uncertain the newest estimate is: its counts are rounded, and edges tell it nothing.
+    #[must_use]
+    pub const fn variances(&self, _: &EdgeNoise) -> Variances {
+        self.config.quality.variances
     }
 }
 

@@ -12,6 +12,7 @@ use super::{
     Delay, Estimate, Evidence, Lags, MAX_WINDOW, Quality, Variances, checked_window, estimate_from,
     steady_delta,
 };
+use crate::uncertainty::EdgeNoise;
 use crate::units::{RangeError, Velocity, checked};
 
 const WEIGHT_FRAC: u32 = 30;
@@ -134,7 +135,7 @@ impl Estimator {
 
     /// Takes what a tick has to tell.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let observation = evidence.observation;
         self.push(observation.delta);
         let velocity = self.weighted_sum();
@@ -142,13 +143,19 @@ impl Estimator {
         let step = i64::from(observation.delta).wrapping_shl(WEIGHT_FRAC);
         self.behind = self.behind.wrapping_add(step).wrapping_sub(velocity);
         self.velocity = velocity;
-        estimate_from::<WEIGHT_FRAC>(
+        *estimate = estimate_from::<WEIGHT_FRAC>(
             observation,
             self.behind,
             velocity,
             change,
             &self.config.quality,
-        )
+        );
+    }
+
+    /// How uncertain the newest estimate is: its counts are rounded, and edges tell it nothing.
+    #[must_use]
+    pub const fn variances(&self, _: &EdgeNoise) -> Variances {
+        self.config.quality.variances
     }
 
     fn push(&mut self, delta: i32) {

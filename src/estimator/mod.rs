@@ -27,6 +27,7 @@ pub mod simple;
 
 use crate::capture::Observation;
 use crate::edges::{EdgeReader, EdgeSample};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Acceleration, Command, Lag, Position, RangeError, Variance, Velocity, checked};
 
 /// What there is to estimate from in a tick.
@@ -72,11 +73,10 @@ pub struct Estimate {
     pub acceleration: Acceleration,
     /// How far each of the three lies back.
     pub lags: Lags,
-    /// How uncertain they are.
-    pub variances: Variances,
 }
 
-/// Squares of the standard deviations (1σ) of an estimate. The root is taken by whoever shows it.
+/// Squares of the standard deviations (1σ) of an estimate, made when they are asked for, outside the tick. The root is
+/// taken by whoever shows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Variances {
     /// Of the velocity, (d/tick)².
@@ -182,7 +182,6 @@ fn estimate_from<const FRAC: u32>(
         velocity: Velocity::from_bits(rounded(velocity, Velocity::FRAC_NBITS) as i32),
         acceleration: Acceleration::from_bits(saturate(rounded(change, Acceleration::FRAC_NBITS))),
         lags: quality.lags,
-        variances: quality.variances,
     }
 }
 
@@ -306,9 +305,23 @@ macro_rules! estimators {
                 match self { $(Self::$variant(estimator) => estimator.prime(velocity),)* }
             }
 
-            /// Takes what a tick has to tell.
+            /// Takes what a tick has to tell; what is to be said of it goes to `estimate`.
+            #[inline]
+            pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
+                match self { $(Self::$variant(estimator) => estimator.update_into(evidence, estimate),)* }
+            }
+
+            /// The same, given back.
             pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
-                match self { $(Self::$variant(estimator) => estimator.update(evidence),)* }
+                let mut estimate = Estimate::default();
+                self.update_into(evidence, &mut estimate);
+                estimate
+            }
+
+            /// How uncertain the newest estimate is, on edges of that noise. Outside the tick.
+            #[must_use]
+            pub fn variances(&self, noise: &EdgeNoise) -> Variances {
+                match self { $(Self::$variant(estimator) => estimator.variances(noise),)* }
             }
         }
     };

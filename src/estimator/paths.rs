@@ -8,7 +8,8 @@
 //! One estimator serves all paths unless a second one is given; a second one costs its own update alone, since
 //! the sample of the tick's edges is made once.
 
-use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence};
+use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence, Variances};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Position, RangeError, Velocity, checked};
 
 /// One of the estimators.
@@ -135,7 +136,7 @@ pub struct Estimators {
     reads_edges: bool,
     /// The second estimator is shown, and the first one serves all else: what a second one is mostly for.
     is_display_alone: bool,
-    /// What the feedback gets, where it is not what is shown.
+    /// What the feedback gets.
     feedback: Estimate,
     first: Estimator,
     second: Option<Estimator>,
@@ -183,17 +184,27 @@ impl Estimators {
             evidence.sample = evidence.edges.sample(evidence.observation);
         }
         let Some(second) = &mut self.second else {
-            *display = self.first.update(evidence);
+            self.first.update_into(evidence, &mut self.feedback);
+            *display = self.feedback;
             return;
         };
         if self.is_display_alone {
             // Each goes where it is wanted, and nothing is parted.
-            *display = second.update(evidence);
-            self.feedback = self.first.update(evidence);
+            second.update_into(evidence, display);
+            self.first.update_into(evidence, &mut self.feedback);
         } else {
             let second = second.update(evidence);
             let first = self.first.update(evidence);
             self.share([first, second], display);
+        }
+    }
+
+    /// How uncertain the newest of what is shown is. Outside the tick.
+    #[must_use]
+    pub fn variances(&self, noise: &EdgeNoise) -> Variances {
+        match (self.paths.display, &self.second) {
+            (Choice::Second, Some(second)) => second.variances(noise),
+            _ => self.first.variances(noise),
         }
     }
 
@@ -213,31 +224,20 @@ impl Estimators {
         *display = *of(self.paths.display);
     }
 
-    /// What the feedback gets, when `display` is shown: an estimate, and the position for the loop; `count` is the middle
-    /// of the count.
+    /// The position for the loop; `count` is the middle of the count.
     #[inline]
     #[must_use]
-    pub fn feedback<'e>(
-        &'e self,
-        display: &'e Estimate,
-        count: Position,
-    ) -> (&'e Estimate, Position) {
-        let estimate = self.fed_back(display);
-        let position = match self.paths.position {
+    pub const fn position(&self, count: Position) -> Position {
+        match self.paths.position {
             PositionFeedback::Count => count,
-            PositionFeedback::Estimate => estimate.position,
-        };
-        (estimate, position)
+            PositionFeedback::Estimate => self.feedback.position,
+        }
     }
 
-    /// The estimate of [`Self::feedback`] alone.
+    /// The estimate for the loop.
     #[inline]
     #[must_use]
-    pub const fn fed_back<'e>(&'e self, display: &'e Estimate) -> &'e Estimate {
-        if self.second.is_some() {
-            &self.feedback
-        } else {
-            display
-        }
+    pub const fn fed_back(&self) -> &Estimate {
+        &self.feedback
     }
 }

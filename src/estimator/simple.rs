@@ -8,6 +8,7 @@
 use super::{
     Delay, Estimate, Evidence, Lags, MAX_WINDOW, Quality, Variances, checked_window, steady_delta,
 };
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Acceleration, Position, RangeError, Velocity};
 
 /// The window and what follows from it.
@@ -96,7 +97,7 @@ impl Estimator {
 
     /// Takes what a tick has to tell. An acceleration beyond ±128 d/tick² saturates.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let observation = evidence.observation;
         let window = self.config.window;
         let newest = observation.delta;
@@ -111,7 +112,7 @@ impl Estimator {
         self.moved = self.moved.wrapping_add(change);
 
         let behind = divide::<{ Position::FRAC_NBITS }>(self.behind, window);
-        Estimate {
+        *estimate = Estimate {
             position: Position::from_bits(observation.position().to_bits().wrapping_sub(behind)),
             velocity: Velocity::from_bits(
                 divide::<{ Velocity::FRAC_NBITS }>(self.moved, window) as i32
@@ -120,8 +121,13 @@ impl Estimator {
                 { Acceleration::FRAC_NBITS },
             >(change, window))),
             lags: self.config.quality.lags,
-            variances: self.config.quality.variances,
-        }
+        };
+    }
+
+    /// How uncertain the newest estimate is: its counts are rounded, and edges tell it nothing.
+    #[must_use]
+    pub const fn variances(&self, _: &EdgeNoise) -> Variances {
+        self.config.quality.variances
     }
 
     /// Puts the newest difference in the place of the oldest and returns the latter.

@@ -195,21 +195,10 @@ impl Homing {
         }
     }
 
-    /// The lines as the supervisor is to see them: while homing leaves a limit switch, it is none. They are copied to
-    /// `left` only where they differ.
+    /// The lines as the supervisor is to see them: while homing leaves a limit switch, it is none.
     #[must_use]
-    #[inline]
-    pub const fn without_limit_left<'l>(&self, lines: &'l Lines, left: &'l mut Lines) -> &'l Lines {
-        if self.is_active() {
-            *left = self.leave_limit(*lines);
-            left
-        } else {
-            lines
-        }
-    }
-
     #[cold]
-    const fn leave_limit(&self, lines: Lines) -> Lines {
+    pub const fn leave_limit(&self, lines: Lines) -> Lines {
         match (self.stage, self.config.direction < 0) {
             (Stage::Search | Stage::Return | Stage::BackOff, true) => Lines {
                 limit_low: false,

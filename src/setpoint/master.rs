@@ -133,7 +133,7 @@ impl Master {
         self.delta = observation.delta;
         self.count = observation.count;
         let evidence = Evidence::new(&observation, &self.edges, None);
-        self.estimate = self.estimator.update(&evidence);
+        self.estimator.update_into(&evidence, &mut self.estimate);
         self.is_slipped = false;
         if observation.delta != 0 {
             self.note_turns(&observation);

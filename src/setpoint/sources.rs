@@ -238,22 +238,37 @@ impl Sources {
     /// which it is ordered, or in which the source is found lost, from the setpoint before, and goes on to its end whatever is
     /// ordered then, except to hold, which ends it where it is; all sources are dropped by it.
     pub fn step(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> Setpoint {
-        self.trouble = None;
-        // Planned moves first, and short: the others have budgets of their own.
+        self.advance(tick, reference, permit);
+        self.last
+    }
+
+    /// The same, with the setpoint left in [`Self::last`]; gives true while a motion is commanded.
+    // Planned moves first, and short: the others have budgets of their own.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) -> bool {
         let is_planned = self.selected == Source::Trajectory && !self.is_threading();
-        self.last = if permit == Permit::Follow && !self.stopping {
-            if is_planned {
-                self.last = self.trajectory.step(tick);
-                return self.last;
-            }
+        if permit == Permit::Follow && !self.stopping && is_planned {
+            self.trouble = None;
+            self.last = self.trajectory.step(tick);
+            self.trajectory.is_moving()
+        } else {
+            self.advance_else(tick, reference, permit);
+            self.is_moving()
+        }
+    }
+
+    /// The same, where it is likely anything but a planned move that goes on.
+    #[inline(never)]
+    pub(crate) fn advance_else(&mut self, tick: u32, reference: &Reference<'_>, permit: Permit) {
+        self.trouble = None;
+        self.last = if permit != Permit::Follow || self.stopping {
+            self.stop(tick, reference, permit)
+        } else {
             match self.follow(tick, reference) {
                 Ok(setpoint) => setpoint,
                 Err(fault) => self.lose(tick, fault),
             }
-        } else {
-            self.stop(tick, reference, permit)
         };
-        self.last
     }
 
     #[inline(never)]

@@ -152,6 +152,7 @@ impl Trajectory {
     }
 
     /// The setpoint of tick `now`.
+    #[inline]
     pub fn step(&mut self, now: u32) -> Setpoint {
         if self.remaining_ticks != 0 {
             self.advance();
@@ -198,6 +199,7 @@ impl Trajectory {
         }
     }
 
+    #[inline]
     fn advance(&mut self) {
         let Phase {
             position_step,

@@ -62,6 +62,15 @@ pub struct Situation<'a> {
     pub told: Command,
 }
 
+/// What the converter was told, and what it says it puts out.
+#[derive(Clone, Copy, Debug)]
+pub struct Loopback {
+    /// What it says.
+    pub readback: Option<Command>,
+    /// What it was told.
+    pub told: Command,
+}
+
 /// What the supervisor knows after the loop of a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Review<'a> {
@@ -89,5 +98,25 @@ pub struct Review<'a> {
     pub active: ActiveLimits,
     /// An experiment keeps the loop open: the setpoint stands where the axis is, and whether the axis moves against its
     /// command is for the experiment to find out, within its own bounds.
+    pub open_loop: bool,
+}
+
+/// What the monitors judge, of a [`Review`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged<'a> {
+    pub permit: Permit,
+    pub tick: u32,
+    pub trouble: Option<Fault>,
+    pub lines: &'a Lines,
+    pub observation: &'a Observation<'a>,
+    /// Estimated, Q11.20 d/tick.
+    pub velocity: i32,
+    /// Of the setpoint, Q11.20 d/tick.
+    pub commanded: i32,
+    /// Q15.16 d.
+    pub following_error: i32,
+    /// Q.30 of full command.
+    pub told: i32,
+    pub active: ActiveLimits,
     pub open_loop: bool,
 }

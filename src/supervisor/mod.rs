@@ -43,6 +43,7 @@ pub use clear::ClearError;
 pub use config::{Config, SupervisorParams};
 pub use fault::{Fault, Reaction};
 pub use fault_set::FaultSet;
+use io::{Judged, Loopback};
 pub use io::{Permit, Review, Situation, State};
 pub use record::{Context, FirstFault, Trip};
 
@@ -107,86 +108,81 @@ impl Supervisor {
             && situation.enable
             && (situation.illegal | situation.missed_ticks) == 0
             && self.reported.is_none()
-            && is_well(situation.lines)
-            && self.watch.readback.is_good(tolerance, readback, told);
+            && situation.lines.is_well()
+            && self
+                .watch
+                .readback
+                .is_good(tolerance, Loopback { readback, told });
         if is_quiet {
             Permit::Follow
         } else {
-            // Put together anew: what is handed on as it came would have to be in memory in every tick.
+            let counts = [situation.illegal, situation.missed_ticks];
             let Situation {
                 tick,
                 enable,
                 lines,
-                illegal,
-                missed_ticks,
                 ..
             } = *situation;
-            self.decide(&Situation {
-                tick,
-                enable,
-                lines,
-                illegal,
-                missed_ticks,
-                readback,
-                told,
-            })
+            self.decide(tick, enable, lines, counts, Loopback { readback, told })
         }
     }
 
+    // Taken apart: what is handed on as it came has to be in memory in every tick.
     #[cold]
     #[inline(never)]
-    fn decide(&mut self, situation: &Situation<'_>) -> Permit {
-        self.lines = *situation.lines;
+    fn decide(
+        &mut self,
+        tick: u32,
+        enable: bool,
+        lines: &Lines,
+        counts: [u16; 2],
+        loopback: Loopback,
+    ) -> Permit {
+        self.lines = *lines;
         self.sequence.count_down();
         let is_off = matches!(self.sequence.phase(), Phase::Disabled | Phase::Faulted);
-        let may_enable = situation.enable && !self.latch.is_set();
-        self.judge_lines(situation, !is_off || may_enable);
+        let may_enable = enable && !self.latch.is_set();
+        let found = [
+            (self.watch.readback).check(self.config.readback_tolerance, loopback),
+            self.watch.count(&self.config, tick, counts),
+            self.reported.take().map(Trip::line),
+        ];
+        if !is_off || may_enable {
+            self.judge_lines(tick, lines, found);
+        }
         let cue = Cue {
-            enable: situation.enable,
-            ready: situation.lines.drive_ready,
+            enable,
+            ready: lines.drive_ready,
             moving: self.moving,
             faulted: self.latch.is_set(),
         };
         if self.sequence.advance(&self.config.times, cue) {
             let waited = i64::from(self.config.times.ready_timeout);
             let trip = Trip::counted(Fault::DriveNotReady, waited, waited);
-            self.trip(trip, situation.tick);
+            self.trip(trip, tick);
         }
-        let is_locked = situation.enable && self.sequence.phase() == Phase::Faulted;
+        let is_locked = enable && self.sequence.phase() == Phase::Faulted;
         self.refused = is_locked && (self.refused || !self.enable);
-        self.enable = situation.enable;
+        self.enable = enable;
         self.sequence.permit()
     }
 
-    /// Faults that show before the setpoint; those of the board count only while the axis is enabled or about to be.
-    fn judge_lines(&mut self, situation: &Situation<'_>, is_active: bool) {
-        let Situation { tick, lines, .. } = *situation;
-        let too_many = self.watch.count(&self.config, situation);
-        let mismatch = self.watch.readback.check(
-            self.config.readback_tolerance,
-            situation.readback,
-            situation.told,
-        );
-        let reported = self.reported.take().map(Trip::line);
-        if !is_active {
-            return;
-        }
+    /// Faults that show before the setpoint, of the board and `found` elsewhere: they count only while the axis is enabled
+    /// or about to be.
+    fn judge_lines(&mut self, tick: u32, lines: &Lines, found: [Option<Trip>; 3]) {
         let was_ready = !matches!(
             self.sequence.phase(),
             Phase::Disabled | Phase::AwaitingReady | Phase::Faulted
         );
         let line = |active: bool, fault| active.then_some(Trip::line(fault));
-        let found = [
+        let of_lines = [
             line(lines.emergency_stop, Fault::EmergencyStop),
             line(lines.drive_fault, Fault::DriveFault),
             line(lines.encoder_lost, Fault::SignalLoss),
             line(self.store_corrupt, Fault::StoreCorrupt),
             line(was_ready && !lines.drive_ready, Fault::DriveNotReady),
-            mismatch,
-            too_many,
-            reported,
         ];
-        for trip in found.into_iter().flatten() {
+        for trip in of_lines.into_iter().chain(found).flatten() {
             self.trip(trip, tick);
         }
     }
@@ -200,32 +196,29 @@ impl Supervisor {
         if self.in_loop && self.watch.is_quiet(&self.config, review) && review.trouble.is_none() {
             return review.permit;
         }
-        // Put together anew, as in `permit`.
+        // Other values: what is handed on as it came has to be in memory in every tick.
         let Review {
             permit,
             tick,
-            moving,
             trouble,
             lines,
             observation,
-            estimate,
-            setpoint,
             following_error,
             told,
             active,
             open_loop,
+            ..
         } = *review;
-        let review = Review {
+        let review = Judged {
             permit,
             tick,
-            moving,
             trouble,
             lines,
             observation,
-            estimate,
-            setpoint,
+            velocity: self.velocity,
+            commanded: review.setpoint.velocity.to_bits(),
             following_error,
-            told,
+            told: told.to_bits(),
             active,
             open_loop,
         };
@@ -238,7 +231,7 @@ impl Supervisor {
 
     #[cold]
     #[inline(never)]
-    fn judge(&mut self, review: &Review<'_>) -> Permit {
+    fn judge(&mut self, review: &Judged<'_>) -> Permit {
         if let Some(fault) = review.trouble {
             self.trip(Trip::line(fault), review.tick);
         }
@@ -256,7 +249,7 @@ impl Supervisor {
 
     #[cold]
     #[inline(never)]
-    fn review_off(&mut self, review: &Review<'_>) -> Permit {
+    fn review_off(&mut self, review: &Judged<'_>) -> Permit {
         self.moving = false;
         self.watch
             .restart(&self.config, review.observation, review.tick);
@@ -295,10 +288,4 @@ impl Supervisor {
     pub fn note_context(&mut self, context: &Context) {
         self.latch.note(context);
     }
-}
-
-/// True if no line stops the axis: limit switches are judged with the motion.
-#[inline(always)]
-const fn is_well(lines: &Lines) -> bool {
-    lines.drive_ready & !(lines.drive_fault | lines.encoder_lost | lines.emergency_stop)
 }

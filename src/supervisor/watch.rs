@@ -1,13 +1,14 @@
 //! All monitors together.
 
+use super::Review;
 use super::config::Config;
 use super::fault::Fault;
+use super::io::Judged;
 use super::monitor::following::{Following, Verdict};
 use super::monitor::{
     against, disabled, encoder_loss, index, leaky, readback, saturation, speed, travel,
 };
 use super::record::Trip;
-use super::{Review, Situation};
 use crate::capture::Observation;
 
 /// The monitors.
@@ -59,19 +60,22 @@ impl Watch {
             .is_quiet(&config.following, error, is_at_rest, review.tick)
             && (delta == 0 || delta ^ told >= 0)
             && (delta.unsigned_abs() >= loss.counts
-                || told.unsigned_abs() <= loss.level.unsigned_abs())
-            && velocity.unsigned_abs() <= config.overspeed.unsigned_abs()
+                || told.unsigned_abs() <= loss.level.cast_unsigned())
+            && velocity.unsigned_abs() <= config.overspeed.cast_unsigned()
             && self.index.way(observation.count).unsigned_abs() <= config.index.within
-            && !(self.busy | lines.limit_low | lines.limit_high | active.high | active.low)
+            && !(self.busy | lines.is_at_limit() | active.is_limited())
             && !observation.has_index()
     }
 
     /// Looks at it in full.
-    pub fn look(&mut self, config: &Config, review: &Review<'_>) -> Found {
-        let Review { observation, .. } = *review;
-        let velocity = review.estimate.velocity.to_bits();
-        let commanded = review.setpoint.velocity.to_bits();
-        let told = review.told.to_bits();
+    pub fn look(&mut self, config: &Config, review: &Judged<'_>) -> Found {
+        let Judged {
+            observation,
+            velocity,
+            commanded,
+            told,
+            ..
+        } = *review;
         let (count, delta) = (observation.count, observation.delta);
         let index = observation.index();
         let error = review.following_error;
@@ -123,14 +127,13 @@ impl Watch {
         }
     }
 
-    /// Counts what comes one by one; gives what is too many.
-    pub fn count(&mut self, config: &Config, situation: &Situation<'_>) -> Option<Trip> {
-        let Situation {
-            tick,
-            illegal,
-            missed_ticks,
-            ..
-        } = *situation;
+    /// Counts what comes one by one, illegal transitions and missed ticks; gives what is too many.
+    pub fn count(
+        &mut self,
+        config: &Config,
+        tick: u32,
+        [illegal, missed_ticks]: [u16; 2],
+    ) -> Option<Trip> {
         let mut found = None;
         if missed_ticks != 0 && self.missed.add(&config.missed, missed_ticks.into(), tick) {
             let (level, limit) = (self.missed.level(), config.missed.limit);

@@ -3,7 +3,7 @@
 use leadscrew::controller::config::{Extras, Gains};
 use leadscrew::controller::friction::Friction;
 use leadscrew::controller::{Config, Controller};
-use leadscrew::estimator::{Delay, Estimate, Lags, Variances};
+use leadscrew::estimator::{Delay, Estimate, Lags};
 use leadscrew::output::ActiveLimits;
 use leadscrew::setpoint::{Setpoint, Turn};
 use leadscrew::units::{Acceleration, Command, Jerk, Lag, Position, Velocity};
@@ -156,7 +156,6 @@ fn any_estimate() -> impl Strategy<Value = Estimate> {
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::from_bits(acceleration),
             lags,
-            variances: Variances::default(),
         },
     )
 }

@@ -71,14 +71,12 @@ fn the_stated_uncertainty_is_that_of_rounding_by_these_gains() {
         [1, 2, 15].map(|window| EstimatorConfig::Simple(simple::Config::new(window).unwrap()));
     for config in counting_estimators().into_iter().chain(averages) {
         let gain = NoiseGain::of(config);
-        let mut stated = None;
-        Listening::new(&[config], edges()).hear(&Capture::default(), None, |_, estimate| {
-            stated = Some(estimate.variances);
-        });
+        let mut listening = Listening::new(&[config], edges());
+        listening.hear(&Capture::default(), None, |_, _| {});
         let Variances {
             velocity,
             acceleration,
-        } = stated.unwrap();
+        } = listening.variances(0).unwrap();
         for (variance, gain) in [(velocity, gain.velocity), (acceleration, gain.acceleration)] {
             let sigma = variance.to_num::<f64>().sqrt();
             let expected = gain * QUANTISATION_SIGMA_D;

@@ -1,7 +1,7 @@
 //! Any captures and commands whatever; where the axis stands and which way it goes.
 
-use leadscrew::estimator::Estimate;
 use leadscrew::estimator::observer::{Config, ObserverParams};
+use leadscrew::estimator::{Estimate, Variances};
 use leadscrew::hal::Capture;
 use leadscrew::units::{AxisScale, Command};
 use proptest::prelude::*;
@@ -120,7 +120,7 @@ fn walk() -> impl Strategy<Value = Walk> {
 }
 
 /// Estimates of a walk, relative to its count, from `start` in direction `sign`.
-fn estimates(walk: &Walk, start: i64, sign: i32) -> Vec<(Estimate, f64)> {
+fn estimates(walk: &Walk, start: i64, sign: i32) -> Vec<(Estimate, f64, Variances)> {
     let mut listener = Listener::new(config());
     let (mut count, mut now) = (start as u32, 0_u32);
     listener.hear(
@@ -148,7 +148,7 @@ fn estimates(walk: &Walk, start: i64, sign: i32) -> Vec<(Estimate, f64)> {
         now = end;
         let next = listener.hear(&capture, Some(Command::from_bits(sign * command)));
         let apart = next.estimate.position.to_num::<f64>() - next.count as f64 - 0.5;
-        heard.push((next.estimate, apart));
+        heard.push((next.estimate, apart, next.variances));
     }
     heard
 }
@@ -167,7 +167,7 @@ proptest! {
         for ((here, there), mirrored) in here.iter().zip(&there).zip(&mirrored) {
             prop_assert_eq!(here.0.velocity, there.0.velocity);
             prop_assert_eq!(here.0.acceleration, there.0.acceleration);
-            prop_assert_eq!(here.0.variances, there.0.variances);
+            prop_assert_eq!(here.2, there.2);
             prop_assert_eq!(here.1, there.1);
             // Products are cut downward in both directions.
             let apart = (here.1 + mirrored.1).abs();

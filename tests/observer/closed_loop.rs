@@ -143,18 +143,17 @@ const SETTLED: f64 = 4.0;
 /// Errors of velocity and acceleration of five seeds with their stated 1σ.
 fn errors_and_sigmas(run: &Loop) -> [(&'static str, Vec<(f64, f64)>); 2] {
     let ticks: Vec<Tick> = SEEDS.flat_map(|seed| Loop { seed, ..*run }.run()).collect();
-    let variances = |tick: &Tick| tick.outputs.estimate.variances;
     let settled = || moving(&ticks).filter(|tick| tick.shaft.velocity.abs() >= SETTLED);
     let velocity = settled().map(|tick| {
         (
             tick.velocity_error(),
-            variances(tick).velocity.to_num::<f64>().sqrt(),
+            tick.variances.velocity.to_num::<f64>().sqrt(),
         )
     });
     let acceleration = settled().map(|tick| {
         (
             tick.acceleration_error(),
-            variances(tick).acceleration.to_num::<f64>().sqrt(),
+            tick.variances.acceleration.to_num::<f64>().sqrt(),
         )
     });
     [

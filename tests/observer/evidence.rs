@@ -3,7 +3,7 @@
 use leadscrew::capture::Unwrapper;
 use leadscrew::edges::{EdgeConfig, EdgeReader, EdgeSample};
 use leadscrew::estimator::observer::{Config, Estimator};
-use leadscrew::estimator::{Estimate, Evidence};
+use leadscrew::estimator::{Estimate, Evidence, Variances};
 use leadscrew::hal::Capture;
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Command;
@@ -24,6 +24,7 @@ pub struct Heard {
     pub delta: i32,
     pub sample: Option<EdgeSample>,
     pub estimate: Estimate,
+    pub variances: Variances,
 }
 
 impl Listener {
@@ -38,11 +39,13 @@ impl Listener {
     pub fn hear(&mut self, capture: &Capture<'_>, command: Option<Command>) -> Heard {
         let observation = self.unwrapper.unwrap(capture);
         let evidence = Evidence::new(&observation, &self.edges, command);
+        let estimate = self.observer.update(&evidence);
         Heard {
             count: observation.count,
             delta: observation.delta,
             sample: self.edges.sample(&observation),
-            estimate: self.observer.update(&evidence),
+            estimate,
+            variances: self.observer.variances(self.edges.noise()),
         }
     }
 }

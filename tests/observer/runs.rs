@@ -1,8 +1,8 @@
 //! Closed loops with the observer in them.
 
 use leadscrew::axis::{Axis, Outputs};
-use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::observer::{self, ObserverParams};
+use leadscrew::estimator::{EstimatorConfig, Variances};
 use leadscrew::tuning::DriveModel;
 use leadscrew::units::AxisScale;
 use leadscrew_hal_mock::arc::State;
@@ -25,6 +25,7 @@ pub struct Loop {
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {
     pub outputs: Outputs,
+    pub variances: Variances,
     pub shaft: State,
 }
 
@@ -93,7 +94,11 @@ impl Loop {
         let mut ticks = Vec::new();
         while let Some(outputs) = simulation.step().unwrap() {
             let shaft = simulation.machine.truth().shaft;
-            ticks.push(Tick { outputs, shaft });
+            ticks.push(Tick {
+                outputs,
+                variances: simulation.axis.variances(),
+                shaft,
+            });
         }
         (ticks, simulation.axis)
     }

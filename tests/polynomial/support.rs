@@ -3,7 +3,7 @@
 use leadscrew::capture::Unwrapper;
 use leadscrew::edges::{EdgeConfig, EdgeReader};
 use leadscrew::estimator::polynomial::{Answer, Config, Estimator};
-use leadscrew::estimator::{Estimate, Evidence};
+use leadscrew::estimator::{Estimate, Evidence, Variances};
 use leadscrew::hal::Capture;
 use leadscrew::uncertainty::EdgeErrors;
 
@@ -31,6 +31,10 @@ impl Bench {
         let observation = self.unwrapper.unwrap(capture);
         self.estimator
             .update(&Evidence::new(&observation, &self.edges, None))
+    }
+
+    pub fn variances(&self) -> Variances {
+        self.estimator.variances(self.edges.noise())
     }
 }
 

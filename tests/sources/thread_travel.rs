@@ -12,7 +12,7 @@ use crate::passes::{lathe, order};
 const ORIGIN_D: f64 = -5000.0;
 
 /// A lathe whose axis counts from there, with the travel from `low_mm` to `high_mm`.
-fn limited(low_mm: f64, high_mm: f64) -> Lathe {
+fn limited(low_mm: f64, high_mm: f64) -> Lathe<'static> {
     let mut lathe = lathe(500.0);
     lathe.run(500);
     let mut config = *lathe.axis.config();

@@ -175,9 +175,10 @@ impl RunSpec<'_> {
 impl Bench<'_> {
     fn judge(&mut self, tick: usize, estimates: &[Estimate], two_edge: &TwoEdgeEstimate) {
         let sigma = |variance: Variance| variance.to_num::<f64>().sqrt();
-        for (tallies, estimate) in self.figures.estimators.iter_mut().zip(estimates) {
+        let seen = estimates.iter().zip(&self.estimators);
+        for (tallies, (estimate, estimator)) in self.figures.estimators.iter_mut().zip(seen) {
             let lags = estimate.lags;
-            let variances = estimate.variances;
+            let variances = estimator.variances(self.reader.noise());
             tallies.push(
                 &self.track,
                 tick,

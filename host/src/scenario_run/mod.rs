@@ -9,6 +9,7 @@ use leadscrew::compensation::{
     ScrewError, ScrewPoint, ScrewTable, Stretch, TableError, TableRefused,
 };
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::estimator::Variances;
 use leadscrew::identification::experiment::{Ending, Experiment};
 use leadscrew::setpoint::thread::SpindleTrouble;
 use leadscrew::supervisor::FirstFault;
@@ -31,6 +32,8 @@ use crate::progress::Progress;
 pub struct Tick {
     /// What the axis put out.
     pub outputs: Outputs,
+    /// How uncertain its estimate is.
+    pub variances: Variances,
     /// The screw, as it really moves: what the encoder says if nothing is wrong with it.
     pub shaft: State,
     /// Carriage, d.
@@ -140,6 +143,7 @@ fn run_with<'s>(
         let machine = &runner.world.board.machine;
         ticks.push(Tick {
             outputs,
+            variances: runner.axis.variances(),
             shaft: machine.screw(),
             carriage: machine.truth().carriage.position,
             homed: runner.axis.homing().origin().is_some(),

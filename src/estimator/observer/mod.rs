@@ -48,7 +48,8 @@ pub use params::ObserverParams;
 use self::motion::Motion;
 pub(crate) use self::supervisor::Line;
 use self::supervisor::Supervisor;
-use super::{Estimate, Evidence};
+use super::{Estimate, Evidence, Variances};
+use crate::uncertainty::EdgeNoise;
 use crate::units::{Command, Velocity};
 
 /// What the observer takes the motion to follow.
@@ -147,7 +148,7 @@ impl Estimator {
 
     /// Takes what a tick has to tell.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let Self { state, config } = self;
         let observation = evidence.observation;
         let jerk = state.jerk(config, evidence.command);
@@ -159,14 +160,27 @@ impl Estimator {
             }
         }
         let Some(sample) = &evidence.sample else {
-            return state.without_edge(config, observation);
+            state.without_edge(config, observation, estimate);
+            return;
         };
         let class = state.see(config, observation, sample);
         if state.motion.is_wild() {
             state.restart(observation.delta);
         }
-        let variances = config.with_long_wave(&class.variances, state.motion.velocity_q20());
-        state.estimate(observation, class.lag, variances)
+        state.estimate(observation, class.lag, estimate);
+    }
+
+    /// The same, given back.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let mut estimate = Estimate::default();
+        self.update_into(evidence, &mut estimate);
+        estimate
+    }
+
+    /// How uncertain the newest estimate is. Outside the tick.
+    #[must_use]
+    pub fn variances(&self, _: &EdgeNoise) -> Variances {
+        self.state.variances(&self.config)
     }
 }
 

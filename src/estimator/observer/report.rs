@@ -1,7 +1,7 @@
-//! The state as an estimate, with its lags and uncertainty.
+//! The state as an estimate, with its lags, and its uncertainty.
 
-use super::State;
 use super::config::Config;
+use super::{Model, State};
 use crate::capture::Observation;
 use crate::estimator::{Estimate, Lags, Variances};
 use crate::units::{Acceleration, Lag, Position, Variance, Velocity};
@@ -12,11 +12,11 @@ impl State {
         &self,
         observation: &Observation<'_>,
         lag: Lag,
-        variances: Variances,
-    ) -> Estimate {
+        estimate: &mut Estimate,
+    ) {
         let base = observation.count.wrapping_shl(Position::FRAC_NBITS);
         let motion = &self.motion;
-        Estimate {
+        *estimate = Estimate {
             position: Position::from_bits(base.wrapping_add(motion.position_q16() as i64)),
             velocity: Velocity::from_bits(motion.velocity_q20()),
             acceleration: Acceleration::from_bits(motion.acceleration_q24()),
@@ -25,15 +25,28 @@ impl State {
                 velocity: Lag::ZERO,
                 acceleration: lag,
             },
-            variances,
+        };
+    }
+
+    /// How uncertain the newest estimate is.
+    pub(super) fn variances(&self, config: &Config) -> Variances {
+        if self.is_resting(config) {
+            return config.rest_variances;
         }
+        let drive = self.supervisor.model() == Model::Drive;
+        let class = config.class(drive, self.class);
+        config.with_long_wave(&class.variances, self.motion.velocity_q20())
+    }
+
+    /// The silence is long enough to be rest.
+    pub(super) const fn is_resting(&self, config: &Config) -> bool {
+        self.silence >= config.supervision.rest_ticks
     }
 }
 
 impl Config {
     /// `variances`, and what the map's residual of long wave adds at a velocity in Q11.20.
-    #[inline]
-    pub(super) const fn with_long_wave(&self, variances: &Variances, velocity: i32) -> Variances {
+    const fn with_long_wave(&self, variances: &Variances, velocity: i32) -> Variances {
         let speed = velocity.unsigned_abs();
         // Q20 · Q36 for 24; Q20 · Q20 for 8, and that by Q48 for 24 again.
         let of_velocity = high_product(speed, self.wave_slope);

@@ -83,24 +83,17 @@ impl State {
         &mut self,
         config: &Config,
         observation: &Observation<'_>,
-    ) -> Estimate {
+        estimate: &mut Estimate,
+    ) {
         self.hold(config, observation);
         if self.motion.is_wild() {
             self.restart(observation.delta);
         }
         let drive = self.supervisor.model() == Model::Drive;
         let class = config.class(drive, self.class);
-        let velocity = self.motion.velocity_q20();
-        if self.silence < config.supervision.rest_ticks {
-            let variances = config.with_long_wave(&class.variances, velocity);
-            return self.estimate(observation, class.lag, variances);
-        }
-        let lag = if self.motion.velocity == 0 {
-            Lag::ZERO
-        } else {
-            class.lag
-        };
-        self.estimate(observation, lag, config.rest_variances)
+        let is_still = self.is_resting(config) && self.motion.velocity == 0;
+        let lag = if is_still { Lag::ZERO } else { class.lag };
+        self.estimate(observation, lag, estimate);
     }
 
     /// Without a sample the shaft is within the discrete all the same; a position that left it is brought

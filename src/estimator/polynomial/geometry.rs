@@ -34,10 +34,15 @@ pub struct Geometry {
     pub by_spread: Option<Reciprocal>,
     /// Mean time of the samples, steps in Q.8.
     pub middle: i32,
-    /// Variance of the velocity at the middle, (d/tick)² per d² of an edge times the mean weight, Q4.28.
-    pub velocity_gain: u32,
-    /// Variance of the acceleration, (d/tick²)² per d² of an edge times the mean weight, Q4.28.
-    pub acceleration_gain: u32,
+}
+
+/// Variances of a fit per d² of an edge times the mean weight, [`GAIN_FRAC`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gains {
+    /// Of the velocity at the middle, (d/tick)².
+    pub velocity: u32,
+    /// Of the acceleration, (d/tick²)².
+    pub acceleration: u32,
 }
 
 impl Geometry {
@@ -59,8 +64,6 @@ impl Geometry {
                 .unwrap_or(0),
             spread: 0,
             by_spread: None,
-            velocity_gain: 0,
-            acceleration_gain: 0,
         };
         geometry.spread = times(m.t4, m.weight)
             .wrapping_sub(wide(m.t2, m.t2))
@@ -68,7 +71,6 @@ impl Geometry {
         if m.samples >= MIN_SAMPLES && geometry.spread > 0 {
             geometry.by_spread = Some(Reciprocal::new(geometry.spread.cast_unsigned()));
         }
-        geometry.set_gains(m.weight);
         geometry
     }
 
@@ -81,11 +83,15 @@ impl Geometry {
             .wrapping_add(low.wrapping_shr(BETA_FRAC))
     }
 
-    fn set_gains(&mut self, weight: i32) {
+    /// Of samples whose weights add up to `weight`.
+    pub fn gains(&self, weight: i32) -> Gains {
         let weight = u64::from(weight.unsigned_abs());
-        self.velocity_gain = self.by_uu.size(weight, 2 * GRID_BITS + GAIN_FRAC);
+        let velocity = self.by_uu.size(weight, 2 * GRID_BITS + GAIN_FRAC);
         let Some(by_spread) = self.by_spread else {
-            return;
+            return Gains {
+                velocity,
+                acceleration: 0,
+            };
         };
         let arm = self
             .middle
@@ -93,7 +99,9 @@ impl Geometry {
             .wrapping_sub(self.beta.wrapping_shr(BETA_FRAC - ARM_FRAC));
         let turned = weight.saturating_mul(u64::from(arm.unsigned_abs().saturating_pow(2)));
         let of_bend = by_spread.size(turned, 2 * GRID_BITS + GAIN_FRAC - 2 * ARM_FRAC);
-        self.velocity_gain = self.velocity_gain.saturating_add(of_bend);
-        self.acceleration_gain = by_spread.size(weight, 4 * GRID_BITS + 2 + GAIN_FRAC);
+        Gains {
+            velocity: velocity.saturating_add(of_bend),
+            acceleration: by_spread.size(weight, 4 * GRID_BITS + 2 + GAIN_FRAC),
+        }
     }
 }

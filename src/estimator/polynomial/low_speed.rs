@@ -1,7 +1,8 @@
 //! What holds where edges are few: silence, and an edge passed to and fro.
 
 use crate::edges::Span;
-use crate::units::{Position, Velocity};
+use crate::estimator::Variances;
+use crate::units::{Position, Variance, Velocity};
 
 /// How long no edge has come.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,14 +49,20 @@ impl Silence {
         self.ticks_q8
     }
 
-    /// A velocity no larger than the silence up to `count` allows, and not turned round: that would be seen on an edge.
+    /// A velocity no larger than the silence up to `count` allows, and not turned round: that would be seen on an edge;
+    /// and the same where it may have turned.
     #[inline]
-    pub fn hold(&self, velocity: i32, count: i32) -> i32 {
-        match self.most(count) {
-            None => velocity,
-            Some(most) if self.is_backward => velocity.clamp(most.wrapping_neg(), 0),
-            Some(most) => velocity.clamp(0, most),
-        }
+    pub fn hold(&self, velocity: i32, count: i32) -> (i32, i32) {
+        let Some(most) = self.most(count) else {
+            return (velocity, velocity);
+        };
+        let least = most.wrapping_neg();
+        let (lowest, highest) = if self.is_backward {
+            (least, 0)
+        } else {
+            (0, most)
+        };
+        (velocity.clamp(lowest, highest), velocity.clamp(least, most))
     }
 
     /// The largest velocity after a silence of more than a tick, Q12.20 d/tick: one discrete, and half a one for displaced
@@ -74,6 +81,23 @@ impl Silence {
             .checked_div(self.ticks_q8)
             .unwrap_or(0);
         Some(most.cast_signed())
+    }
+
+    /// What is not known of a velocity at rest is what the silence up to `count` allows.
+    pub fn variances(&self, count: i32) -> Variances {
+        let most = self.most(count).unwrap_or(i32::MAX).cast_unsigned();
+        let square = u64::from(most.min(1 << 24)).wrapping_mul(u64::from(most.min(1 << 24)));
+        // Uniform within ±most: a third of the square.
+        let variance = Variance::from_bits(
+            square
+                .wrapping_shl(Variance::FRAC_NBITS - 2 * Velocity::FRAC_NBITS)
+                .checked_div(3)
+                .unwrap_or(0),
+        );
+        Variances {
+            velocity: variance,
+            acceleration: variance,
+        }
     }
 }
 

@@ -26,6 +26,7 @@ mod geometry;
 mod low_speed;
 mod ratio;
 mod regular;
+mod spread;
 mod window;
 
 pub use config::Config;
@@ -33,12 +34,13 @@ pub use config::Config;
 use self::fit::wide;
 use self::found::{Found, trapezium};
 use self::low_speed::{Dither, Silence};
+use self::spread::Spread;
 use self::window::{Sample, Window};
 use super::{Estimate, Evidence, Lags, Variances, shift_rounded};
 use crate::capture::Observation;
 use crate::edges::{EdgeSample, MAX_SPAN_TICKS, Span};
 use crate::uncertainty::EdgeNoise;
-use crate::units::{Acceleration, Lag, Position, Variance, Velocity};
+use crate::units::{Acceleration, Lag, Position, Velocity};
 
 /// Steps of the time grid in a tick: 2¹.
 const GRID_BITS: u32 = 1;
@@ -122,7 +124,7 @@ impl Estimator {
 
     /// Takes what a tick has to tell.
     #[inline(never)]
-    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+    pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
         let Evidence {
             observation,
             edges,
@@ -135,36 +137,55 @@ impl Estimator {
         let is_gap = elapsed >= Span::from_bits(MAX_SPAN_TICKS << Span::FRAC_NBITS);
         if is_gap || way != observation.delta {
             self.start_over();
-            return self.rest(observation);
+            self.rest(observation, estimate);
+            return;
         }
         let steps = self.advance(elapsed);
-        let sample = match sample {
-            Some(sample) => Some(self.on_grid(observation, elapsed, sample)),
-            None => {
-                self.silence.lengthen(elapsed);
-                None
-            }
-        };
         let base = self.count.wrapping_shl(window::PLACE_FRAC);
-        let regular = self.window.tick(&self.config, steps, base, sample);
-        if self.is_at_rest() {
-            return self.rest(observation);
-        }
-        self.primed = None;
-        match regular {
-            Some(step) => {
+        let Some(sample) = sample else {
+            self.silence.lengthen(elapsed);
+            self.window.tick(&self.config, steps, base, None);
+            self.answer_anywhere(observation, estimate);
+            return;
+        };
+        let sample = self.on_grid(observation, elapsed, sample);
+        match (self.window).tick(&self.config, steps, base, Some(sample)) {
+            Some(step) if !self.is_at_rest() => {
+                self.primed = None;
                 let found = Found::regular(&self.config, &self.window, step, self.now());
-                self.answer(observation, &found, edges.noise())
+                self.answer(observation, &found, estimate);
             }
-            None => self.answer_anywhere(observation, edges.noise()),
+            _ => self.answer_anywhere(observation, estimate),
         }
     }
 
-    /// Samples wherever they stand.
+    /// The same, given back.
+    pub fn update(&mut self, evidence: &Evidence<'_>) -> Estimate {
+        let mut estimate = Estimate::default();
+        self.update_into(evidence, &mut estimate);
+        estimate
+    }
+
+    /// How uncertain the newest estimate is, on edges of that noise. Outside the tick.
+    #[must_use]
+    pub fn variances(&self, noise: &EdgeNoise) -> Variances {
+        if self.is_at_rest() {
+            return self.silence.variances(self.count);
+        }
+        let spread = Spread::of(&self.config, &self.window, self.now());
+        spread.variances(self.config.answer, self.motion.newest, noise)
+    }
+
+    /// Samples wherever they stand, if they tell a motion.
     #[inline(never)]
-    fn answer_anywhere(&mut self, observation: &Observation<'_>, noise: &EdgeNoise) -> Estimate {
+    fn answer_anywhere(&mut self, observation: &Observation<'_>, estimate: &mut Estimate) {
+        if self.is_at_rest() {
+            self.rest(observation, estimate);
+            return;
+        }
+        self.primed = None;
         let found = Found::anywhere(&self.window, self.motion, self.now());
-        self.answer(observation, &found, noise)
+        self.answer(observation, &found, estimate);
     }
 
     /// Goes on to this tick's sampling instant; steps of the grid since the previous one.
@@ -239,39 +260,22 @@ impl Estimator {
             || self.silence.ticks_q8() >= self.config.rest_ticks_q8
     }
 
-    /// No velocity, or the one that was said beforehand; what is not known of it is what the silence allows.
+    /// No velocity, or the one that was said beforehand.
     #[cold]
     #[inline(never)]
-    fn rest(&mut self, observation: &Observation<'_>) -> Estimate {
+    fn rest(&mut self, observation: &Observation<'_>, estimate: &mut Estimate) {
         if self.silence.ticks_q8() >= self.config.rest_ticks_q8 {
             self.window.clear();
             self.primed = None;
         }
         let velocity = self.primed.unwrap_or(0);
         self.motion = Motion::steady(velocity);
-        let most = self
-            .silence
-            .most(self.count)
-            .unwrap_or(i32::MAX)
-            .cast_unsigned();
-        let square = u64::from(most.min(1 << 24)).wrapping_mul(u64::from(most.min(1 << 24)));
-        // Uniform within ±most: a third of the square.
-        let variance = Variance::from_bits(
-            square
-                .wrapping_shl(Variance::FRAC_NBITS - 2 * Velocity::FRAC_NBITS)
-                .checked_div(3)
-                .unwrap_or(0),
-        );
-        Estimate {
+        *estimate = Estimate {
             position: observation.position(),
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::ZERO,
             lags: Lags::default(),
-            variances: Variances {
-                velocity: variance,
-                acceleration: variance,
-            },
-        }
+        };
     }
 
     /// The sampling instant from the window's origin.
@@ -284,19 +288,13 @@ impl Estimator {
     }
 
     #[inline(always)]
-    fn answer(
-        &mut self,
-        observation: &Observation<'_>,
-        found: &Found,
-        noise: &EdgeNoise,
-    ) -> Estimate {
+    fn answer(&mut self, observation: &Observation<'_>, found: &Found, estimate: &mut Estimate) {
         let behind = found.behind;
         let extrapolated = found.newest();
-        let newest = self.silence.hold(extrapolated, self.count);
         // The next sample is bridged to its step by how the shaft went, and it may have turned round.
-        let most = self.silence.most(self.count).unwrap_or(i32::MAX);
+        let (newest, bridging) = self.silence.hold(extrapolated, self.count);
         self.motion = Motion {
-            newest: extrapolated.clamp(most.wrapping_neg(), most),
+            newest: bridging,
             acceleration: found.acceleration,
         };
         let lag = Lag::from_bits(behind.wrapping_shr(TIME_FRAC - Lag::FRAC_NBITS));
@@ -304,18 +302,17 @@ impl Estimator {
             .count
             .wrapping_shl(Position::FRAC_NBITS)
             .wrapping_add(found.place);
-        let (velocity, lag_x, lag_v, gain) = match self.config.answer {
-            Answer::Centre => (found.velocity, lag, lag, found.velocity_gain),
+        let (velocity, lag_x, lag_v) = match self.config.answer {
+            Answer::Centre => (found.velocity, lag, lag),
             Answer::Newest => {
                 place = place.wrapping_add(trapezium(found.velocity, newest, behind));
                 // A line has no other velocity than that of its middle; what the silence allows is of now.
                 let is_newest = found.is_curved || newest != extrapolated;
                 let lag_v = if is_newest { Lag::ZERO } else { lag };
-                (newest, Lag::ZERO, lag_v, found.newest_gain())
+                (newest, Lag::ZERO, lag_v)
             }
         };
-        let variances = found.variances(gain, self.motion.newest, self.window.edges(), noise);
-        Estimate {
+        *estimate = Estimate {
             position: Position::from_bits(place),
             velocity: Velocity::from_bits(velocity),
             acceleration: Acceleration::from_bits(found.acceleration),
@@ -324,7 +321,6 @@ impl Estimator {
                 velocity: lag_v,
                 acceleration: lag,
             },
-            variances,
-        }
+        };
     }
 }

@@ -1,71 +1,63 @@
 //! The fit of a regular window, a full one of samples one a tick: sums that slide, exact in integers.
 //!
-//! With k the age of a sample in ticks, newest first, a tick makes every age one larger: Σ(k + 1)²x = Σk²x + 2Σkx + Σx,
-//! and so on. From the sums follow those with the orthogonal polynomials of the time from the middle,
-//! z = (W − 1)/2 − k and z² − Σz²/W, whose norms are `line` = W(W² − 1)/12 and `bend` = line·(W² − 4)/15.
+//! The sums are those with the orthogonal polynomials of the time from the middle: with k the age of a sample in ticks,
+//! newest first, and z = (W − 1)/2 − k, they are X = Σx, L = Σ2z·x and B = Σ12(z² − Σz²/W)·x, and the norms of z and of
+//! z² − Σz²/W are `line` = W(W² − 1)/12 and `bend` = line·(W² − 4)/15. A tick makes every z one smaller; with the sample n
+//! that comes and o that goes
+//!
+//! ```text
+//! X' = X + n − o
+//! L' = L − 2X + (W − 1)·n + (W + 1)·o
+//! B' = B − 12(L − X) + 2(W − 1)(W − 2)·n − 2(W + 1)(W + 2)·o
+//! ```
+//!
+//! Where the places count from is in X alone: the others are orthogonal to a constant.
 
 use super::config::MIN_SAMPLES;
-use super::fit::{times, wide};
-use super::geometry::GAIN_FRAC;
+use super::fit::wide;
+use super::geometry::{GAIN_FRAC, Gains};
 use super::window::{CAPACITY, PLACE_FRAC};
 
 /// What a window's length fixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regular {
     window: i32,
-    /// Σk and Σk² over the window.
-    ages: i32,
-    square_ages: i32,
-    /// W².
-    square: i32,
-    /// Of Σx in Σ2z·x; of Σk·x it is −2, both with [`LINE_BITS`].
-    line_of_x: u32,
-    /// Of Σx and −Σk·x in Σ12(z² − Σz²/W)·x; of Σk²·x it is 12, all with [`BEND_BITS`].
-    bend_of_x: u32,
-    bend_of_kx: u32,
-    /// Σ2z·x with [`LINE_BITS`] to Q.20 d/tick.
+    /// What a sample that comes adds to L and B.
+    line_of_new: i32,
+    bend_of_new: i32,
+    /// What one that goes adds to L, and takes from B.
+    line_of_old: i32,
+    bend_of_old: i32,
+    /// L with [`LINE_BITS`] to Q.20 d/tick.
     of_velocity: Factor,
-    /// Σ12(z² − Σz²/W)·x with [`BEND_BITS`] to Q.24 d/tick².
+    /// B with [`BEND_BITS`] to Q.24 d/tick².
     of_acceleration: Factor,
     /// 1/W, Q.32.
     per_sample: i32,
     /// Half the mean square of z, ticks² in Q.16: what an acceleration lifts the mean place by.
     lift: i32,
-    /// Variance of the velocity at the middle per d² of a sample, [`GAIN_FRAC`].
-    pub velocity_gain: u32,
-    /// Variance of the acceleration per d² of a sample, [`GAIN_FRAC`].
-    pub acceleration_gain: u32,
+    /// Variances per d² of a sample.
+    pub gains: Gains,
 }
 
 /// Fractional bits of the sums with polynomials: factors are below ½ by them, and the sums stay below 2⁶¹.
 const LINE_BITS: u32 = 8;
 const BEND_BITS: u32 = 10;
 
-/// Σx, Σk·x and Σk²·x of places with [`PLACE_FRAC`] fractional bits from a base.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AgeSums {
+/// X, L and B of places with [`PLACE_FRAC`] fractional bits from a base.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sums {
     pub x: i64,
-    pub kx: i64,
-    pub k2x: i64,
+    pub line: i64,
+    pub bend: i64,
 }
 
-impl AgeSums {
+impl Sums {
     pub const NONE: Self = Self {
         x: 0,
-        kx: 0,
-        k2x: 0,
+        line: 0,
+        bend: 0,
     };
-
-    /// Of places newest first.
-    pub fn of(places: impl Iterator<Item = i32>) -> Self {
-        let mut sums = Self::NONE;
-        for (place, age) in places.zip(0_i32..) {
-            sums.x = sums.x.wrapping_add(i64::from(place));
-            sums.kx = sums.kx.wrapping_add(wide(place, age));
-            sums.k2x = sums.k2x.wrapping_add(wide(place, age.wrapping_mul(age)));
-        }
-        sums
-    }
 }
 
 impl Regular {
@@ -77,72 +69,82 @@ impl Regular {
         let bend = line * (count * count - 4.0) / 15.0;
         let to_place = |frac: u32| libm::ldexp(1.0, frac.wrapping_sub(PLACE_FRAC).cast_signed());
         let gain = |value: f64| libm::round(libm::ldexp(value, GAIN_FRAC.cast_signed())) as u32;
-        let span = window.wrapping_sub(1);
-        let constant = span.wrapping_mul(window.wrapping_sub(2)).wrapping_mul(2);
         let window = window.cast_signed();
-        let ages = window.wrapping_mul(window.wrapping_sub(1)).wrapping_shr(1);
+        // 2(W − 1)(W − 2), and with the signs of W turned.
+        let of_bend = |window: i32| {
+            let (one, other) = (window.wrapping_sub(1), window.wrapping_sub(2));
+            one.wrapping_mul(other).wrapping_mul(2)
+        };
         Self {
             window,
-            ages,
-            square_ages: (libm::round(line + f64::from(ages) * (count - 1.0) / 2.0)) as i32,
-            square: window.wrapping_mul(window),
-            line_of_x: span.wrapping_shl(LINE_BITS),
-            bend_of_x: constant.wrapping_shl(BEND_BITS),
-            bend_of_kx: span.wrapping_mul(12).wrapping_shl(BEND_BITS),
+            line_of_new: window.wrapping_sub(1),
+            bend_of_new: of_bend(window),
+            line_of_old: window.wrapping_add(1),
+            bend_of_old: of_bend(window.wrapping_neg()),
             of_velocity: Factor::new(to_place(20 - LINE_BITS) / (2.0 * line)),
             of_acceleration: Factor::new(to_place(24 - BEND_BITS) / (6.0 * bend)),
             per_sample: libm::round(libm::ldexp(1.0 / count, 32)) as i32,
             lift: libm::round(libm::ldexp(line / count, 15)) as i32,
-            velocity_gain: gain(1.0 / line),
-            acceleration_gain: gain(4.0 / bend),
+            gains: Gains {
+                velocity: gain(1.0 / line),
+                acceleration: gain(4.0 / bend),
+            },
         }
     }
 
-    /// Moves the base of the places up by `way`.
-    #[inline]
-    pub fn move_base(&self, sums: &mut AgeSums, way: i32) {
-        // A product added is one instruction.
-        let back = way.wrapping_neg();
-        sums.x = sums.x.wrapping_add(wide(back, self.window));
-        sums.kx = sums.kx.wrapping_add(wide(back, self.ages));
-        sums.k2x = sums.k2x.wrapping_add(wide(back, self.square_ages));
+    /// Sums over a window of `places`, newest first.
+    pub fn sums(&self, places: impl Iterator<Item = i32>) -> Sums {
+        let mut sums = Sums::NONE;
+        let newest = self.window.wrapping_sub(1);
+        for (place, age) in places.zip(0_i32..) {
+            let doubled = newest.wrapping_sub(age.wrapping_mul(2));
+            let bend = doubled
+                .wrapping_mul(doubled)
+                .wrapping_mul(3)
+                .wrapping_sub(self.window.wrapping_mul(self.window))
+                .wrapping_add(1);
+            sums.x = sums.x.wrapping_add(i64::from(place));
+            sums.line = sums.line.wrapping_add(wide(place, doubled));
+            sums.bend = sums.bend.wrapping_add(wide(place, bend));
+        }
+        sums
     }
 
-    /// A tick: all samples get older, one comes, the oldest goes.
+    /// A tick: the base of the places moves up by `way`, all samples get older, one comes, the oldest goes.
     #[inline]
-    pub fn exchange(&self, sums: &mut AgeSums, newest: i32, oldest: i32) {
-        let AgeSums { x, kx, k2x } = *sums;
+    pub fn tick(&self, sums: &mut Sums, way: i32, newest: i32, oldest: i32) {
+        // A product added is one instruction.
         let gone = oldest.wrapping_neg();
-        let older = kx.wrapping_add(x);
-        sums.k2x = k2x
-            .wrapping_add(kx)
-            .wrapping_add(older)
-            .wrapping_add(wide(gone, self.square));
-        sums.kx = older.wrapping_add(wide(gone, self.window));
+        let x = sums.x.wrapping_add(wide(way.wrapping_neg(), self.window));
+        let apart = sums.line.wrapping_sub(x);
+        sums.bend = sums
+            .bend
+            .wrapping_sub(apart.wrapping_mul(12))
+            .wrapping_add(wide(newest, self.bend_of_new))
+            .wrapping_add(wide(gone, self.bend_of_old));
+        sums.line = apart
+            .wrapping_sub(x)
+            .wrapping_add(wide(newest, self.line_of_new))
+            .wrapping_add(wide(oldest, self.line_of_old));
         sums.x = x.wrapping_add(i64::from(newest.wrapping_sub(oldest)));
     }
 
     /// Velocity at the middle, Q12.20 d/tick, and acceleration, Q8.24 d/tick²; they saturate.
     #[inline]
-    pub fn motion(&self, sums: &AgeSums) -> (i32, i32) {
-        let AgeSums { x, kx, k2x } = *sums;
-        // 2z and 12(z² − Σz²/W) by powers of k.
-        let line = multiple(x, self.line_of_x).wrapping_sub(kx.wrapping_shl(LINE_BITS + 1));
-        let bend = multiple(x, self.bend_of_x)
-            .wrapping_sub(multiple(kx, self.bend_of_kx))
-            .wrapping_add(multiple(k2x, 12 << BEND_BITS));
+    pub const fn motion(&self, sums: &Sums) -> (i32, i32) {
         (
-            self.of_velocity.apply(line),
-            self.of_acceleration.apply(bend),
+            self.of_velocity.apply(sums.line.wrapping_shl(LINE_BITS)),
+            self.of_acceleration
+                .apply(sums.bend.wrapping_shl(BEND_BITS)),
         )
     }
 
     /// Place at the middle, Q.16 d from the base.
     #[inline]
-    pub fn place(&self, sums: &AgeSums, acceleration: i32) -> i64 {
+    pub fn place(&self, sums: &Sums, acceleration: i32) -> i64 {
         // 64 bits by 32, of which the last 32 are a fraction, and three of those are wanted.
         const WANTED_BITS: u32 = 16 - PLACE_FRAC;
-        let high = times(sums.x.wrapping_shr(32), self.per_sample);
+        let high = wide(sums.x.wrapping_shr(32) as i32, self.per_sample);
         let low = u64::from(sums.x as u32).wrapping_mul(u64::from(self.per_sample.cast_unsigned()));
         let low = low.wrapping_shr(32 - WANTED_BITS).cast_signed();
         let mean = high.wrapping_shl(WANTED_BITS).wrapping_add(low);
@@ -150,18 +152,20 @@ impl Regular {
     }
 }
 
-/// `value`·`factor` where it fits; cheaper than with a signed factor.
-#[inline]
-const fn multiple(value: i64, factor: u32) -> i64 {
-    value.wrapping_mul(factor as i64)
-}
-
 /// A factor of 32 bits and a power of two: right to 2⁻³².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Factor {
     mantissa: u32,
-    /// Right shift of the product's words but the last, 1 to 31.
-    shift: u32,
+    narrowing: Narrowing,
+}
+
+/// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Narrowing {
+    /// 2ˢ⁻¹: half a unit of what is left, and where the high word of what still fits ends.
+    half: i32,
+    /// 2³²⁻ˢ.
+    multiplier: u32,
 }
 
 impl Factor {
@@ -171,34 +175,48 @@ impl Factor {
         let bits = 32_i32.wrapping_sub(exponent);
         Self {
             mantissa: libm::round(libm::ldexp(factor, bits)) as u32,
-            shift: bits.cast_unsigned().wrapping_sub(32).clamp(1, 31),
+            narrowing: Narrowing::by(bits.cast_unsigned().wrapping_sub(32)),
         }
     }
 
     /// The product to nearest, saturating.
     #[inline]
-    fn apply(self, value: i64) -> i32 {
-        let mantissa = u64::from(self.mantissa);
+    const fn apply(self, value: i64) -> i32 {
+        let mantissa = self.mantissa as u64;
         let high = value.wrapping_shr(32).wrapping_mul(mantissa.cast_signed());
-        let low = u64::from(value as u32).wrapping_mul(mantissa);
-        let half = 1_u32.wrapping_shl(self.shift.wrapping_sub(1));
-        let low = low.wrapping_shr(32).wrapping_add(u64::from(half));
-        narrow(high.wrapping_add(low.cast_signed()), self.shift)
+        let low = (value as u32 as u64).wrapping_mul(mantissa);
+        let low = low
+            .wrapping_shr(32)
+            .wrapping_add(self.narrowing.half.cast_unsigned() as u64);
+        self.narrowing.apply(high.wrapping_add(low.cast_signed()))
     }
 }
 
-/// `sum`/2^`shift`, rounded down, saturating; `shift` is 1 to 31.
-#[inline]
-fn narrow(sum: i64, shift: u32) -> i32 {
-    let most = 1_i32.wrapping_shl(shift.wrapping_sub(1));
-    let high = sum.wrapping_shr(32) as i32;
-    if high >= most {
-        i32::MAX
-    } else if high < most.wrapping_neg() {
-        i32::MIN
-    } else {
-        let low = (sum as u32).wrapping_shr(shift);
-        high.wrapping_shl(32_u32.wrapping_sub(shift)) | low.cast_signed()
+impl Narrowing {
+    /// By `shift`.
+    fn by(shift: u32) -> Self {
+        let shift = shift.clamp(1, 31);
+        Self {
+            half: 1_i32.wrapping_shl(shift.wrapping_sub(1)),
+            multiplier: 1_u32.wrapping_shl(32_u32.wrapping_sub(shift)),
+        }
+    }
+
+    /// `sum`/2ˢ, rounded down, saturating.
+    #[inline]
+    const fn apply(self, sum: i64) -> i32 {
+        let high = sum.wrapping_shr(32) as i32;
+        if high >= self.half {
+            i32::MAX
+        } else if high < self.half.wrapping_neg() {
+            i32::MIN
+        } else {
+            let low = (sum as u32 as u64)
+                .wrapping_mul(self.multiplier as u64)
+                .wrapping_shr(32) as i32;
+            high.wrapping_mul(self.multiplier.cast_signed())
+                .wrapping_add(low)
+        }
     }
 }
 
@@ -217,7 +235,7 @@ mod tests {
         for window in 4..=64 {
             let regular = Regular::new(window);
             let middle = (f64::from(window) - 1.0) / 2.0;
-            let sums = AgeSums::of((0..window).map(|age| parabola(middle - f64::from(age))));
+            let sums = regular.sums((0..window).map(|age| parabola(middle - f64::from(age))));
             let (velocity, acceleration) = regular.motion(&sums);
             let place = regular.place(&sums, acceleration);
             // A place is off by 2⁻¹⁴ d.
@@ -238,31 +256,28 @@ mod tests {
             let regular = Regular::new(window as u32);
             let place = |tick: usize| (tick * tick * 977 % 1_000_003) as i32;
             let of = |newest: usize, base: i32| {
-                AgeSums::of((0..window).map(|age| place(newest - age) - base))
+                regular.sums((0..window).map(|age| place(newest - age) - base))
             };
             let mut sums = of(100, 0);
+            let mut before = 0;
             for tick in 101..400 {
                 let base = tick as i32 * 5;
-                regular.move_base(&mut sums, 5 + if tick == 101 { 500 } else { 0 });
-                regular.exchange(&mut sums, place(tick) - base, place(tick - window) - base);
-                let exact = of(tick, base);
-                assert_eq!(
-                    (sums.x, sums.kx, sums.k2x),
-                    (exact.x, exact.kx, exact.k2x),
-                    "{window} at {tick}"
-                );
+                let (newest, oldest) = (place(tick) - base, place(tick - window) - base);
+                regular.tick(&mut sums, base - before, newest, oldest);
+                assert_eq!(sums, of(tick, base), "{window} at {tick}");
+                before = base;
             }
         }
     }
 
     #[test]
     fn what_does_not_fit_saturates() {
-        assert_eq!(narrow(i64::MAX, 25), i32::MAX);
-        assert_eq!(narrow(i64::MIN, 25), i32::MIN);
-        assert_eq!(narrow((1 << 56) - 1, 25), i32::MAX);
-        assert_eq!(narrow(1 << 56, 25), i32::MAX);
-        assert_eq!(narrow(-(1 << 56), 25), i32::MIN);
-        assert_eq!(narrow(-1, 31), -1);
-        assert_eq!(narrow(3 << 30, 31), 1);
+        assert_eq!(Narrowing::by(25).apply(i64::MAX), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(i64::MIN), i32::MIN);
+        assert_eq!(Narrowing::by(25).apply((1 << 56) - 1), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(1 << 56), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(-(1 << 56)), i32::MIN);
+        assert_eq!(Narrowing::by(31).apply(-1), -1);
+        assert_eq!(Narrowing::by(31).apply(3 << 30), 1);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::config::{Config, MIN_SAMPLES};
 use super::fit::Sums;
-use super::regular::AgeSums;
+use super::regular;
 
 /// Most samples.
 pub const CAPACITY: usize = 64;
@@ -30,17 +30,18 @@ pub struct Sample {
 #[repr(C)]
 pub struct Window {
     /// Sums over a regular window; of no meaning else.
-    ages: AgeSums,
+    regular: regular::Sums,
     newest: usize,
     count: usize,
     edges: u32,
     origin: i32,
     base: i32,
     regularity: Regularity,
-    /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts.
+    /// Places; each is stored twice, [`CAPACITY`] apart, so that the window is one slice wherever it starts; so are steps and
+    /// edges.
     places: [i32; 2 * CAPACITY],
     steps: [i32; 2 * CAPACITY],
-    edges_of: [u16; CAPACITY],
+    edges_of: [u16; 2 * CAPACITY],
 }
 
 /// How many of the newest samples came one a tick, at one and the same step from the origin.
@@ -55,11 +56,11 @@ impl Window {
         Self {
             places: [0; 2 * CAPACITY],
             steps: [0; 2 * CAPACITY],
-            edges_of: [0; CAPACITY],
+            edges_of: [0; 2 * CAPACITY],
             newest: 0,
             count: 0,
             edges: 0,
-            ages: AgeSums::NONE,
+            regular: regular::Sums::NONE,
             origin: 0,
             base: 0,
             regularity: Regularity {
@@ -94,7 +95,7 @@ impl Window {
 
     /// Goes on by a tick: the origin moves by `steps` of the grid and to the place `base`, a sample comes and old ones go.
     /// Gives the step of the newest sample if a full window of them stands one a tick.
-    #[inline]
+    #[inline(always)]
     pub fn tick(
         &mut self,
         config: &Config,
@@ -107,15 +108,20 @@ impl Window {
         self.base = base;
         match sample {
             Some(sample) if self.goes_on(steps, &sample) && self.is_regular(config) => {
-                config.regular.move_base(&mut self.ages, way);
-                self.exchange(config, sample);
+                self.exchange(config, way, sample);
                 Some(sample.step)
             }
             _ => {
                 self.change(config, steps, sample);
-                self.is_regular(config).then_some(self.regularity.step)
+                self.regular_step(config)
             }
         }
+    }
+
+    /// Step of the newest sample if a full window of them stands one a tick.
+    #[inline]
+    pub fn regular_step(&self, config: &Config) -> Option<i32> {
+        self.is_regular(config).then_some(self.regularity.step)
     }
 
     #[inline]
@@ -125,12 +131,12 @@ impl Window {
 
     /// One for one: what a regular window does.
     #[inline]
-    fn exchange(&mut self, config: &Config, sample: Sample) {
+    fn exchange(&mut self, config: &Config, way: i32, sample: Sample) {
         let slot = self.newest.wrapping_add(self.count).wrapping_sub(1) & (CAPACITY - 1);
         if let (Some(edges), Some(oldest)) = (self.edges_of.get(slot), self.places.get(slot)) {
             let newest = sample.place.wrapping_sub(self.base);
             let oldest = oldest.wrapping_sub(self.base);
-            config.regular.exchange(&mut self.ages, newest, oldest);
+            config.regular.tick(&mut self.regular, way, newest, oldest);
             self.edges = self
                 .edges
                 .wrapping_add(sample.edges)
@@ -158,7 +164,7 @@ impl Window {
         }
         self.drop_old(config);
         if self.is_regular(config) {
-            self.ages = AgeSums::of(self.places());
+            self.regular = config.regular.sums(self.places());
         }
     }
 
@@ -174,8 +180,10 @@ impl Window {
                 *at = step;
             }
         }
-        if let Some(edges) = self.edges_of.get_mut(first) {
-            *edges = sample.edges as u16;
+        for slot in [first, second] {
+            if let Some(edges) = self.edges_of.get_mut(slot) {
+                *edges = sample.edges as u16;
+            }
         }
     }
 
@@ -218,8 +226,8 @@ impl Window {
     }
 
     /// Sums over a regular window.
-    pub const fn ages(&self) -> &AgeSums {
-        &self.ages
+    pub const fn regular(&self) -> &regular::Sums {
+        &self.regular
     }
 
     /// Places from the base, newest first.
@@ -232,12 +240,14 @@ impl Window {
     /// Sums over all samples.
     #[inline(never)]
     pub fn sums(&self) -> Sums {
-        let steps = self.steps.get(self.newest..).unwrap_or(&[]);
+        let window = self.newest..self.newest.wrapping_add(self.count);
+        let steps = self.steps.get(window.clone()).unwrap_or(&[]);
+        let edges = self.edges_of.get(window.clone()).unwrap_or(&[]);
+        let places = self.places.get(window).unwrap_or(&[]);
+        let (origin, base) = (self.origin, self.base);
         let mut sums = Sums::default();
-        for ((place, step), age) in self.places().zip(steps).zip(0..) {
-            let slot = self.newest.wrapping_add(age) & (CAPACITY - 1);
-            let edges = self.edges_of.get(slot).copied().unwrap_or(0);
-            sums.add(step.wrapping_sub(self.origin), place, edges);
+        for ((step, place), &edges) in steps.iter().zip(places).zip(edges) {
+            sums.add(step.wrapping_sub(origin), place.wrapping_sub(base), edges);
         }
         sums
     }

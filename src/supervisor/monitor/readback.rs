@@ -1,6 +1,7 @@
 //! What the converter says it puts out, against what it was told.
 
 use super::super::fault::Fault;
+use super::super::io::Loopback;
 use super::super::record::Trip;
 use crate::units::Command;
 
@@ -16,18 +17,13 @@ pub struct Readback {
 impl Readback {
     /// True if `readback` is what was told, to `tolerance` (Q.30), and was before.
     #[inline]
-    pub fn is_good(&self, tolerance: i32, readback: Option<Command>, told: Command) -> bool {
+    pub fn is_good(&self, tolerance: i32, Loopback { readback, told }: Loopback) -> bool {
         self.ticks == 0 && readback.is_none_or(|seen| off(seen, told).saturating_abs() <= tolerance)
     }
 
     /// Judges it.
     #[cold]
-    pub fn check(
-        &mut self,
-        tolerance: i32,
-        readback: Option<Command>,
-        told: Command,
-    ) -> Option<Trip> {
+    pub fn check(&mut self, tolerance: i32, Loopback { readback, told }: Loopback) -> Option<Trip> {
         let off = readback.map_or(0, |seen| off(seen, told));
         if off.saturating_abs() <= tolerance {
             self.ticks = 0;

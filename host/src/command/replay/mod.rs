@@ -6,7 +6,7 @@ use std::path::Path;
 
 use leadscrew::capture::CaptureHealth;
 use leadscrew::edges::EdgeConfig;
-use leadscrew::estimator::{Estimate, EstimatorConfig};
+use leadscrew::estimator::{Estimate, EstimatorConfig, Variances};
 use leadscrew::uncertainty::EdgeErrors;
 use leadscrew::units::Position;
 
@@ -90,6 +90,7 @@ struct Replay {
 struct Track {
     config: EstimatorConfig,
     estimates: Vec<Estimate>,
+    variances: Vec<Variances>,
 }
 
 impl Replay {
@@ -117,6 +118,7 @@ impl Replay {
         let track = |&config: &EstimatorConfig| Track {
             config,
             estimates: Vec::new(),
+            variances: Vec::new(),
         };
         let mut tracks: Vec<_> = configs.iter().map(track).collect();
         let mut counts = Vec::new();
@@ -130,6 +132,9 @@ impl Replay {
                     ..estimate
                 });
             });
+            for (index, track) in tracks.iter_mut().enumerate() {
+                track.variances.extend(listening.variances(index));
+            }
             if let Some(tie) = &mut tie {
                 tie.note(counts.len(), &listening);
             }
@@ -157,9 +162,10 @@ impl Replay {
         write_file(path, |file| {
             let mut report = CsvReport::new(file, self.tick_hz, &[])?;
             let mut progress = Progress::new("writing", self.counts.len() as u64);
-            for (tick, (estimate, count)) in track.estimates.iter().zip(&self.counts).enumerate() {
+            let said = track.estimates.iter().zip(&track.variances);
+            for (tick, ((estimate, variances), count)) in said.zip(&self.counts).enumerate() {
                 progress.step();
-                report.row(tick as u64, *count, estimate, &[])?;
+                report.row(tick as u64, *count, estimate, variances, &[])?;
             }
             report.finish()
         })

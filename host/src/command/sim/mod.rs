@@ -6,6 +6,7 @@ mod scenario;
 use std::path::Path;
 
 use leadscrew::axis::Outputs;
+use leadscrew::estimator::Variances;
 use leadscrew::params::ParamError;
 use leadscrew::units::{RangeError, checked};
 use leadscrew_hal_mock::drive::DriveParams;
@@ -158,7 +159,7 @@ fn write_csv(path: &Path, run: &Run) -> Result<(), CommandError> {
             tick.carriage,
             tick.tachogenerator,
         ];
-        (*outputs, further)
+        (*outputs, tick.variances, further)
     });
     write_csv_rows(path, run.tick_hz, &FURTHER_COLUMNS, rows)
 }
@@ -168,14 +169,15 @@ fn write_csv_rows(
     path: &Path,
     tick_hz: f64,
     columns: &[&str],
-    rows: impl ExactSizeIterator<Item = (Outputs, Vec<f64>)>,
+    rows: impl ExactSizeIterator<Item = (Outputs, Variances, Vec<f64>)>,
 ) -> Result<(), CommandError> {
     write_file(path, |file| {
         let mut report = CsvReport::new(file, tick_hz, columns)?;
         let mut progress = Progress::new("writing", rows.len() as u64);
-        for (index, (outputs, further)) in rows.enumerate() {
+        for (index, (outputs, variances, further)) in rows.enumerate() {
             progress.step();
-            report.row(index as u64, outputs.count, &outputs.estimate, &further)?;
+            let (count, estimate) = (outputs.count, &outputs.estimate);
+            report.row(index as u64, count, estimate, &variances, &further)?;
         }
         report.finish()
     })

@@ -3,6 +3,10 @@
 //! and a full screw table, every monitor, and the record of telemetry.
 //!
 //! `one_stamp` is told the last edge's time alone, as by boards with one capture register; `all_edges` all of them.
+//!
+//! The worst ticks lie where a move starts or ends: the samples of the polynomial's window do not stand one a tick and its
+//! normal equations are made anew, of as many samples as the window has (15 here, 64 at most), while the supervisor
+//! looks at every monitor in full.
 
 use board_mps2_an386::instructions::Counter;
 use leadscrew::axis::{Axis, Inputs, Outputs};

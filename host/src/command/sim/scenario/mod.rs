@@ -89,7 +89,7 @@ fn write_csv(path: &Path, record: &Record) -> Result<(), CommandError> {
             f64::from(outputs.state as u8),
             outputs.fault.map_or(0.0, |fault| f64::from(fault as u8)),
         ];
-        (*outputs, further)
+        (*outputs, tick.variances, further)
     });
     write_csv_rows(path, record.tick_hz, &FURTHER_COLUMNS, rows)
 }
