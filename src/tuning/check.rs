@@ -9,6 +9,7 @@ use crate::axis::{Axis, Inputs};
 use crate::hal::Capture;
 use crate::params::{AxisParams, MotionParams, ParamError};
 use crate::setpoint::profile::Profile;
+use crate::supervisor::Fault;
 use crate::units::{AxisScale, Position};
 
 /// What the trial came to.
@@ -20,6 +21,24 @@ pub struct Trial {
     pub standing_d: f64,
     /// Peak to peak of the shaft in the last of four seconds of rest, d.
     pub swing_d: f64,
+    /// What the supervisor stopped it for; the moves after that are not made.
+    pub fault: Option<Fault>,
+}
+
+impl Trial {
+    /// The worse of both in each figure.
+    #[must_use]
+    pub const fn or(&self, other: &Self) -> Self {
+        Self {
+            peak_d: self.peak_d.max(other.peak_d),
+            standing_d: self.standing_d.max(other.standing_d),
+            swing_d: self.swing_d.max(other.swing_d),
+            fault: match self.fault {
+                Some(fault) => Some(fault),
+                None => other.fault,
+            },
+        }
+    }
 }
 
 /// Most ticks of delay in a trial.
@@ -217,5 +236,6 @@ pub fn trial(
         let [low, high] = extent;
         result.swing_d = result.swing_d.max(high - low);
     }
+    result.fault = axis.outputs().fault;
     Ok(result)
 }

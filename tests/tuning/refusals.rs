@@ -85,12 +85,13 @@ fn a_drive_too_late_for_any_loop_is_refused_by_its_margins() {
 }
 
 #[test]
-fn a_loop_with_its_margins_that_does_not_come_to_rest_is_refused_by_the_trial() {
+fn a_loop_with_its_margins_that_its_drive_cannot_bear_is_refused_by_the_trial() {
     let good = bare();
     let (_, report) = autotune(&model_of(&good), &base(), &observer()).unwrap();
-    // Commands that the drive answers to in steps of 5 % of full command: nothing linear shows them.
+    // Guides that hold the axis with three quarters of full command: nothing linear shows them.
     let mut machine = good;
-    machine.drive.resolution = 0.05;
+    machine.drive.friction_mm_per_min = 900.0;
+    machine.drive.stiction_ratio = 8.0;
     let model = model_of(&machine);
     let params = unchecked(&model, report.bandwidth_rad_per_s, report.damping);
     let (_, worst) = margins(&model, &params, &OCTAVES).unwrap();
@@ -105,10 +106,10 @@ fn a_loop_with_its_margins_that_does_not_come_to_rest_is_refused_by_the_trial() 
     let AutotuneError::Trial(trial) = error else {
         panic!("{error}")
     };
-    assert!(trial.swing_d > 5.0, "{trial:?}");
+    assert!(trial.fault.is_some(), "{trial:?}");
     let message = error.to_string();
     assert!(
-        message.contains("does not settle") && message.contains("steps of command"),
+        message.contains("stops the axis for") && message.contains("ease the guides"),
         "{message}"
     );
 }
@@ -125,8 +126,8 @@ fn an_axis_that_its_drive_cannot_accelerate_is_refused_with_what_the_drive_gives
         worst.gain_db >= LEAST_GAIN_DB && worst.phase_deg >= LEAST_PHASE_DEG,
         "margins alone would let it pass: {worst:?}"
     );
-    let figures = run(&machine, &params);
-    assert!(does_not_stand(figures.as_ref()), "{figures:?}");
+    let figures = run(&machine, &params).unwrap();
+    assert!(figures.following.peak() > 200.0, "{figures:?}");
 
     let error = autotune(&model, &base(), &observer()).unwrap_err();
     assert!(matches!(error, AutotuneError::Behind { .. }), "{error}");

@@ -69,21 +69,44 @@ fn the_full_machine_and_its_backlashes_outside_the_loop_are_followed_to_twenty_d
     for actual in [full(), outside, coupling] {
         let figures = run(&full(), &actual, travel(9000.0));
         // 20 d are asked for; 5 d would be better still.
-        assert!(figures.following.peak() <= 20.0, "{figures:?}");
-        // 1 d is aimed at and not reached; this keeps what is.
-        assert!(figures.standing.peak() <= 3.5, "{figures:?}");
+        assert!(figures.following.peak() <= 5.0, "{figures:?}");
+        assert!(figures.standing.peak() <= 1.0, "{figures:?}");
         assert!(figures.rest_swing_d <= 1.0, "{figures:?}");
     }
 }
 
 #[test]
 fn off_nominal_the_full_machine_stays_bounded_and_nothing_oscillates() {
-    // 40 d are aimed at.
-    for (gain, period, bound) in [(0.8, 1.3, 65.0), (1.2, 0.75, 40.0)] {
+    // 40 d are asked for; 10 d would be better still.
+    for (gain, period) in [(0.8, 1.3), (1.2, 0.75)] {
         let figures = run(&full(), &detuned(full(), gain, period), travel(6000.0));
-        assert!(figures.following.peak() <= bound, "{gain}: {figures:?}");
+        assert!(figures.following.peak() <= 15.0, "{gain}: {figures:?}");
+        assert!(figures.standing.peak() <= 2.5, "{gain}: {figures:?}");
         assert!(figures.output_swing < 1e-3, "{gain}: {figures:?}");
         assert!(figures.rest_swing_d <= 1.0, "{gain}: {figures:?}");
+    }
+}
+
+#[test]
+fn so_do_faster_and_slower_drives() {
+    for (period, damping) in [(0.05, 0.8), (0.15, 0.35)] {
+        let mut nominal = full();
+        nominal.drive.natural_period_s = period;
+        nominal.drive.damping = damping;
+        for (gain, longer) in [(0.8, 1.3), (1.2, 0.75)] {
+            let actual = detuned(nominal, gain, longer);
+            let figures = run(&nominal, &actual, travel(6000.0));
+            assert!(
+                figures.following.peak() <= 15.0,
+                "{period}, {gain}: {figures:?}"
+            );
+            assert!(
+                figures.standing.peak() <= 4.0,
+                "{period}, {gain}: {figures:?}"
+            );
+            assert!(figures.output_swing < 1e-3, "{period}, {gain}: {figures:?}");
+            assert!(figures.rest_swing_d <= 1.0, "{period}, {gain}: {figures:?}");
+        }
     }
 }
 
@@ -101,7 +124,7 @@ fn a_creep_of_a_millimetre_a_minute_keeps_to_its_line() {
     let creep = |feed_mm_per_min| Course::Creep { feed_mm_per_min };
     let figures = run(&bare(), &bare(), creep(1.0));
     assert!(figures.creep.peak() <= 1.0, "{figures:?}");
-    // With friction 1 d is aimed at and not reached; this keeps what is.
+    // The start, half a discrete of way, is not in it.
     for feed in [1.0, -1.0] {
         let figures = run(&full(), &full(), creep(feed));
         assert!(figures.creep.peak() <= 7.0, "{figures:?}");

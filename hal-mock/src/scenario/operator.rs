@@ -89,10 +89,12 @@ impl Operator {
     /// # Errors
     /// A resolution or a rate out of range.
     pub fn new(params: &AxisParams, config: &AxisConfig) -> Result<Self, ScenarioError> {
+        let mut planner = Planner::new(config.limits, Position::ZERO, 0);
+        planner.set_notice(config.controller.notice_ticks());
         Ok(Self {
             scale: AxisScale::new(params.motion.counts_per_mm, params.tick_hz)?,
             fastest: params.motion.max_feed_mm_per_min,
-            planner: Planner::new(config.limits, Position::ZERO, 0),
+            planner,
             start: None,
             is_stale: true,
         })

@@ -53,6 +53,8 @@ struct Order {
 pub struct Planner {
     limits: Limits,
     travel: Option<TravelLimits>,
+    /// Ticks from an order to the start of a motion from rest.
+    notice: u32,
     order: Order,
     /// The order before the plan made last.
     previous_order: Order,
@@ -78,6 +80,7 @@ impl Planner {
         Self {
             limits,
             travel: None,
+            notice: 1,
             order,
             previous_order: order,
             previous: standing,
@@ -89,10 +92,10 @@ impl Planner {
     /// All orders but the override are forgotten.
     pub fn begin(&mut self, position: Position, tick: u32) {
         let percent = self.order.percent;
-        let travel = self.travel;
+        let (travel, notice) = (self.travel, self.notice);
         *self = Self::new(self.limits, position, tick);
         self.order.percent = percent;
-        self.travel = travel;
+        (self.travel, self.notice) = (travel, notice);
     }
 
     /// Forgets what is over at `tick`; to be called at least every 2³⁰ ticks, as ticks wrap.
@@ -111,6 +114,12 @@ impl Planner {
     /// Takes limits of travel, once the axis is homed, or does without.
     pub const fn set_travel(&mut self, travel: Option<TravelLimits>) {
         self.travel = travel;
+    }
+
+    /// Lets motions from rest start as much later than asked for as makes `ticks` from the order on: what the drive needs to be
+    /// ready for them ([`Axis::notice_ticks`](crate::axis::Axis::notice_ticks)). Motions that change others start as asked.
+    pub const fn set_notice(&mut self, ticks: u32) {
+        self.notice = ticks;
     }
 
     /// The exact state at a tick not before the last one passed.
@@ -272,6 +281,11 @@ impl Planner {
                 Plan::to(state, target, &self.limits.slowed(feed))?
             }
             None => Plan::stop(state, &self.limits)?,
+        };
+        let start = if state.is_at_rest() {
+            start.wrapping_add(self.notice).wrapping_sub(1)
+        } else {
+            start
         };
         self.previous = self.latest;
         self.previous_order = self.order;

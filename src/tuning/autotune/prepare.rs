@@ -13,13 +13,11 @@ use crate::units::{AxisScale, Lag};
 
 /// Feed below which the calm gains count, as edges a tick.
 const CALM_EDGES: f64 = 1.0;
-/// Band at rest, d: within a discrete the encoder shows nothing, and to overcome static friction takes a way of that size.
-const REST_BAND_D: f64 = 1.0;
+/// Band at rest, d: within a discrete the encoder shows nothing, and a push moves the axis by about one. Of 0.55 to 1 this left least.
+const REST_BAND_D: f64 = 0.85;
 /// What friction, ripple and steps of command leave of a command unexplained, 1σ, of full command.
 const LEARNING_NOISE: f64 = 1e-3;
-/// Time in which a push at rest rises by static friction, of the drive's period: slower pushes take longer than 100 ms, faster ones throw
-/// the axis farther.
-const LIFT: f64 = 2.0 / 3.0;
+
 /// What is left of the disturbance that an observer has to expect where friction and offset are fed forward: of 0.1 to 3 this
 /// crept best on the 16K20F3.
 const LEFT_DISTURBANCE: f64 = 0.2;
@@ -91,7 +89,8 @@ pub fn prepared(
             stribeck_mm_per_min: model.stribeck_mm_per_min.max(0.02),
             dead_time_s: model.dead_time_s,
             least_command: model.resolution / 2.0,
-            lift_s: model.natural_period_s * LIFT,
+            // Faster pushes throw the axis farther, slower ones take longer than 100 ms.
+            lift_s: model.natural_period_s,
             ..base.friction
         },
         calm: CalmParams::default(),

@@ -14,7 +14,7 @@ pub enum AutotuneError {
     Param(ParamError),
     /// No bandwidth keeps the margins; those of the slowest loop.
     NoMargin(Margins),
-    /// The trial on the model does not come to rest or oscillates.
+    /// The trial on the model, or on a corner, does not come to rest, oscillates, or is stopped by a fault.
     Trial(Trial),
     /// The trial on the model, or on a corner, follows so far behind that the supervisor would warn.
     Behind {
@@ -42,6 +42,14 @@ impl fmt::Display for AutotuneError {
                 "no loop keeps {LEAST_GAIN_DB} dB and {LEAST_PHASE_DEG}° with this estimator and delay: the slowest one has \
                  {:.1} dB and {:.0}°; shorten the delay or choose an estimator with less lag",
                 margins.gain_db, margins.phase_deg
+            ),
+            Self::Trial(Trial {
+                fault: Some(fault), ..
+            }) => write!(
+                f,
+                "on the model, or on a drive 20 % beside it, the supervisor stops the axis for {}; ask for less feed or \
+                 acceleration, ease the guides, or identify the drive again",
+                fault.name()
             ),
             Self::Trial(trial) => write!(
                 f,

@@ -37,6 +37,7 @@ fn with_feedback(feedforward: &ControllerParams, feedback: ControllerParams) -> 
         ..*feedforward
     }
 }
+
 /// A loop that may be offered.
 pub struct Chosen {
     pub params: AxisParams,
