@@ -218,17 +218,23 @@ impl Drive {
         answered
     }
 
-    /// True if static friction holds the shaft, or catches it within this tick.
+    /// True if static friction holds the shaft, or catches it within this tick: where its velocity would change sign, unless the
+    /// drive pulls it the other way by more than friction holds.
     fn is_stuck(&self, wanted: f64) -> bool {
         let State {
             velocity,
             acceleration,
             ..
         } = self.shaft;
-        self.friction
-            .as_ref()
-            .is_some_and(|friction| (wanted as f32).abs() <= friction.held)
-            && (velocity == 0.0 || (velocity + acceleration) * velocity <= 0.0)
+        let Some(friction) = &self.friction else {
+            return false;
+        };
+        let wanted = wanted as f32;
+        if velocity == 0.0 {
+            return wanted.abs() <= friction.held;
+        }
+        let onward = if velocity > 0.0 { wanted } else { -wanted };
+        (velocity + acceleration) * velocity <= 0.0 && onward >= -friction.held
     }
 
     /// The motion of a tick in which something stronger than the drive has the shaft.

@@ -97,7 +97,7 @@ fn so_do_faster_and_slower_drives() {
             let actual = detuned(nominal, gain, longer);
             let figures = run(&nominal, &actual, travel(6000.0));
             assert!(
-                figures.following.peak() <= 15.0,
+                figures.following.peak() <= 40.0,
                 "{period}, {gain}: {figures:?}"
             );
             assert!(

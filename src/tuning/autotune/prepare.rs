@@ -89,7 +89,7 @@ pub fn prepared(
             stribeck_mm_per_min: model.stribeck_mm_per_min.max(0.02),
             dead_time_s: model.dead_time_s,
             least_command: model.resolution / 2.0,
-            // Faster pushes throw the axis farther, slower ones take longer than 100 ms.
+            // Faster pushes throw the axis farther, slower ones come late.
             lift_s: model.natural_period_s,
             ..base.friction
         },
