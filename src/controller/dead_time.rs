@@ -6,6 +6,7 @@
 //! feedforward meant it to be without an error that feedback would have to see first. Only a setpoint
 //! that moves is given back; at rest nothing is owed.
 
+use crate::estimator::saturate;
 use crate::units::{Command, RangeError, checked};
 
 /// Quantised dead time.
@@ -57,7 +58,7 @@ pub struct State {
     /// Q.30.
     owed: i64,
     /// What of the last command the drive does not answer, friction apart, Q.30.
-    lost: i64,
+    lost: i32,
 }
 
 impl State {
@@ -75,43 +76,55 @@ impl State {
     /// What of the last command the drive does not answer, friction apart, Q.30.
     #[inline]
     #[must_use]
-    pub const fn lost(&self) -> i64 {
+    pub const fn lost(&self) -> i32 {
         self.lost
     }
 
     /// `law`, Q.30, with what is given back in this tick; `friction` is the part of it that moves nothing.
     #[inline]
-    pub fn step(&mut self, config: &Config, law: i64, friction: i32, resting: bool) -> i64 {
-        let net = law.wrapping_sub(i64::from(config.zero));
-        let has_sign = net.unsigned_abs() > u64::from(config.least);
-        let sign = if net < 0 { -1 } else { 1 };
-        if has_sign && sign != self.sign {
-            // The first sign is no reversal.
-            if self.sign != 0 {
-                self.left = config.ticks;
-            }
-            self.sign = sign;
-        }
-        self.lost = if self.left > 0 {
-            net.wrapping_sub(i64::from(friction))
-        } else {
-            0
-        };
-        if resting {
-            self.owed = 0;
-            self.left = self.left.saturating_sub(1);
-            return law;
+    pub fn step(&mut self, config: &Config, law: i32, friction: i32, resting: bool) -> i32 {
+        let net = law.saturating_sub(config.zero);
+        if (net ^ self.sign) < 0 || self.sign == 0 {
+            self.turn(config, net);
         }
         if self.left > 0 {
-            self.left = self.left.wrapping_sub(1);
-            self.owed = self
-                .owed
-                .wrapping_add(self.lost)
-                .clamp(MOST.wrapping_neg(), MOST);
+            self.stand(net.saturating_sub(friction), resting);
+            return law;
+        }
+        self.lost = 0;
+        if resting {
+            self.owed = 0;
             return law;
         }
         let share = self.owed.wrapping_shr(SHARE);
         self.owed = self.owed.wrapping_sub(share);
-        law.wrapping_add(share)
+        law.saturating_add(saturate(share))
+    }
+
+    /// A command of another sign than the last: if it has one.
+    #[cold]
+    fn turn(&mut self, config: &Config, net: i32) {
+        if net.unsigned_abs() <= config.least {
+            return;
+        }
+        // The first sign is no reversal.
+        if self.sign != 0 {
+            self.left = config.ticks;
+        }
+        self.sign = if net < 0 { -1 } else { 1 };
+    }
+
+    /// A tick in which the drive stands, and does not answer `lost`.
+    #[cold]
+    fn stand(&mut self, lost: i32, resting: bool) {
+        self.left = self.left.wrapping_sub(1);
+        self.lost = lost;
+        self.owed = if resting {
+            0
+        } else {
+            self.owed
+                .wrapping_add(i64::from(lost))
+                .clamp(MOST.wrapping_neg(), MOST)
+        };
     }
 }

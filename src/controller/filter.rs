@@ -71,13 +71,13 @@ impl Config {
 
     /// What `feedback` comes to after a long time, Q.30; without filters it passes as it is.
     #[must_use]
-    pub fn steady(&self, feedback: i64) -> i64 {
+    pub fn steady(&self, feedback: i32) -> i32 {
         if !self.is_on() {
             return feedback;
         }
         i64::from(bounded(feedback))
             .wrapping_mul(i64::from(self.steady_gain))
-            .wrapping_shr(Command::FRAC_NBITS)
+            .wrapping_shr(Command::FRAC_NBITS) as i32
     }
 
     /// The sections in use.
@@ -118,7 +118,7 @@ impl State {
     /// As after a long time under `feedback`, Q.30.
     #[cold]
     #[inline(never)]
-    pub fn steady(config: &Config, feedback: i64) -> Self {
+    pub fn steady(config: &Config, feedback: i32) -> Self {
         let value = bounded(config.steady(feedback));
         Self {
             sections: [SectionState::steady(value); MAX_SECTIONS],
@@ -128,8 +128,8 @@ impl State {
 
     /// One tick.
     #[inline]
-    pub fn step(&mut self, config: &Config, feedback: i64) -> i32 {
-        let mut value = bounded(feedback.wrapping_sub(self.foreseen(config)));
+    pub fn step(&mut self, config: &Config, feedback: i32) -> i32 {
+        let mut value = bounded(feedback.saturating_sub(self.foreseen(config)));
         // No loop: two of them are fewer than what it takes to go round.
         let ([one, other], [first, second]) = (&config.sections, &mut self.sections);
         if config.section_count != 0 {
@@ -145,7 +145,7 @@ impl State {
 
     /// Σ cᵢ·u₋ᵢ; makes room for the newest. Five products at most add up in 64 bits, the taps' sum is below 2.
     #[inline]
-    fn foreseen(&mut self, config: &Config) -> i64 {
+    fn foreseen(&mut self, config: &Config) -> i32 {
         let mut sum = 0_i64;
         let mut newer = 0;
         for (tap, past) in config
@@ -157,6 +157,6 @@ impl State {
             sum = sum.wrapping_add(i64::from(*tap).wrapping_mul(i64::from(*past)));
             core::mem::swap(past, &mut newer);
         }
-        sum.wrapping_shr(Command::FRAC_NBITS)
+        sum.wrapping_shr(Command::FRAC_NBITS) as i32
     }
 }

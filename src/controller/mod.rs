@@ -68,6 +68,8 @@ pub struct Controller {
     /// What of the last demand goes against friction, and what was learned, Q.30.
     withheld: i32,
     dead_time: dead_time::State,
+    /// There is a jump to be taken up: `start_from` is set, or something is left in `transfer`.
+    jumps: bool,
     /// What is left of the last jump of the law, Q.30; a jump across the range of a command needs 33 bits.
     transfer: i64,
     /// The next demand is to start from this output.
@@ -101,6 +103,7 @@ impl Controller {
             previous_error: 0,
             previous_following_error: 0,
             fresh: true,
+            jumps: true,
             transfer: 0,
             start_from: Some(Command::ZERO),
             learning: learning::State::new(),
@@ -123,6 +126,7 @@ impl Controller {
         // A new deadband must not look like a change of the error.
         self.previous_error = config.apply_deadband(self.previous_following_error);
         self.start_from = Some(output);
+        self.jumps = true;
     }
 
     /// Takes what a tick shows beside what [`step`](Self::step) acts on: by how much the count changed, and what an observer is
@@ -189,11 +193,11 @@ impl Controller {
                 self.integral.add(increment);
             }
         }
-        law = law.wrapping_add(self.integral.value());
+        law = law.saturating_add(self.integral.value());
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
-        law = law.wrapping_add(self.config.turning.command(setpoint));
+        law = law.saturating_add(self.config.turning.command(setpoint));
         self.withheld = 0;
         if self.config.friction.is_on() {
             law = self.against_friction(law, setpoint, error, at_rest, estimate);
@@ -203,12 +207,20 @@ impl Controller {
             law = self.dead_time.step(config, law, lost, at_rest.is_some());
         }
         if self.config.learning.is_on() {
-            let (added, changed) = self.learning.add(&self.config.learning, setpoint);
-            law = law.wrapping_add(added);
-            self.integral.give_way(changed);
-            self.withheld = saturate(i64::from(self.withheld).wrapping_add(added));
+            let config = &self.config.learning;
+            if self.learning.is_due(config, setpoint) {
+                let changed = self.learning.learn(config, setpoint);
+                self.integral.give_way(changed);
+            }
+            let added = self.learning.add(setpoint);
+            law = law.saturating_add(added);
+            self.withheld = self.withheld.saturating_add(added);
         }
-        let command = self.without_jump(saturate(law));
+        let command = if self.jumps {
+            self.without_jump(law)
+        } else {
+            law
+        };
         Demand {
             command: Command::from_bits(command),
             following_error,
@@ -220,8 +232,7 @@ impl Controller {
     #[inline]
     #[must_use]
     pub const fn withheld(&self) -> Command {
-        let lost = saturate(self.dead_time.lost());
-        Command::from_bits(self.withheld.saturating_add(lost))
+        Command::from_bits(self.withheld.saturating_add(self.dead_time.lost()))
     }
 
     /// Other gains on an `error` that stays as it is: the integral takes over what they give less. What they make of the
@@ -233,7 +244,7 @@ impl Controller {
         } = &self.config;
         let (before, after) = if calm { (moving, slow) } else { (slow, moving) };
         let signals = [error, 0, 0, 0, 0, 0, 0];
-        let less = before.weigh(&signals).wrapping_sub(after.weigh(&signals));
+        let less = before.weigh(&signals).saturating_sub(after.weigh(&signals));
         self.integral.take(less);
     }
 
@@ -267,12 +278,12 @@ impl Controller {
     #[inline]
     fn against_friction(
         &mut self,
-        law: i64,
+        law: i32,
         setpoint: &Setpoint,
         error: i32,
         at_rest: Option<Verdict>,
         estimate: &Estimate,
-    ) -> i64 {
+    ) -> i32 {
         match at_rest {
             Some(verdict @ (Verdict::Within | Verdict::Near)) if self.config.rest.pushes() => {
                 self.pushed(law, error, verdict, estimate.velocity.to_bits())
@@ -281,33 +292,33 @@ impl Controller {
                 let config = &self.config.friction;
                 let level = self.friction.step(config, setpoint, &self.learning);
                 self.withheld = level;
-                law.wrapping_add(i64::from(level))
+                law.saturating_add(level)
             }
         }
     }
 
     #[inline(never)]
-    fn pushed(&mut self, law: i64, error: i32, verdict: Verdict, velocity: i32) -> i64 {
+    fn pushed(&mut self, law: i32, error: i32, verdict: Verdict, velocity: i32) -> i32 {
         self.friction.let_go();
-        let bias = i64::from(self.config.bias);
+        let bias = self.config.bias;
         let held = self.learning.scaled(self.config.rest.held());
         let standing = rest::Standing {
             error,
             verdict,
-            law: law.wrapping_sub(bias),
+            law: law.saturating_sub(bias),
             held,
             velocity,
         };
-        let law = law.wrapping_add(self.rest.push(&self.config.rest, &standing));
-        self.withheld = saturate(law.wrapping_sub(bias)).clamp(held.wrapping_neg(), held);
+        let law = law.saturating_add(self.rest.push(&self.config.rest, &standing));
+        self.withheld = law.saturating_sub(bias).clamp(held.wrapping_neg(), held);
         law
     }
 
     /// The feedback part through the filters, and what passes by them.
     #[inline(never)]
-    fn filtered(&mut self, feedback: i64, setpoint: &Setpoint) -> i64 {
+    fn filtered(&mut self, feedback: i32, setpoint: &Setpoint) -> i32 {
         let config = &self.config;
-        if self.start_from.is_some() {
+        if self.jumps && self.start_from.is_some() {
             self.filter = filter::State::steady(&config.filter, feedback);
         }
         let filtered = self.filter.step(&config.filter, feedback);
@@ -316,7 +327,7 @@ impl Controller {
             setpoint.acceleration.to_bits(),
             setpoint.jerk.to_bits(),
         ];
-        config.ahead(&setpoints).wrapping_add(i64::from(filtered))
+        config.ahead(&setpoints).saturating_add(filtered)
     }
 
     /// Whether the gains for slow motion count.
@@ -343,14 +354,13 @@ impl Controller {
     }
 
     /// Adds the transfer term, which starts as whatever keeps the output where it was.
+    #[cold]
     fn without_jump(&mut self, law: i32) -> i32 {
-        if let Some(output) = self.start_from.take() {
-            self.transfer = i64::from(output.to_bits()).wrapping_sub(i64::from(law));
-        } else if self.transfer != 0 {
-            self.transfer = decayed(self.transfer, self.config.transfer_decay);
-        } else {
-            return law;
-        }
+        self.transfer = match self.start_from.take() {
+            Some(output) => i64::from(output.to_bits()).wrapping_sub(i64::from(law)),
+            None => decayed(self.transfer, self.config.transfer_decay),
+        };
+        self.jumps = self.transfer != 0;
         saturate(i64::from(law).wrapping_add(self.transfer))
     }
 }

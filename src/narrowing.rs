@@ -1,0 +1,66 @@
+//! From 64 bits to 32 by a shift that is not known beforehand.
+
+/// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Narrowing {
+    /// 2ˢ⁻¹: half a unit of what is left, and where the high word of what still fits ends.
+    half: i32,
+    /// 2³²⁻ˢ.
+    multiplier: u32,
+}
+
+impl Narrowing {
+    /// By `shift`.
+    pub const fn by(shift: u32) -> Self {
+        let shift = if shift == 0 {
+            1
+        } else if shift > 31 {
+            31
+        } else {
+            shift
+        };
+        Self {
+            half: 1_i32.wrapping_shl(shift.wrapping_sub(1)),
+            multiplier: 1_u32.wrapping_shl(32_u32.wrapping_sub(shift)),
+        }
+    }
+
+    /// Half a unit of what is left.
+    #[inline]
+    pub const fn half(self) -> i32 {
+        self.half
+    }
+
+    /// `sum`/2ˢ, rounded down, saturating.
+    #[inline]
+    pub const fn apply(self, sum: i64) -> i32 {
+        let high = sum.wrapping_shr(32) as i32;
+        if high >= self.half {
+            i32::MAX
+        } else if high < self.half.wrapping_neg() {
+            i32::MIN
+        } else {
+            let low = (sum as u32 as u64)
+                .wrapping_mul(self.multiplier as u64)
+                .wrapping_shr(32) as i32;
+            high.wrapping_mul(self.multiplier.cast_signed())
+                .wrapping_add(low)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Narrowing;
+
+    #[test]
+    fn what_does_not_fit_saturates() {
+        assert_eq!(Narrowing::by(25).apply(i64::MAX), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(i64::MIN), i32::MIN);
+        assert_eq!(Narrowing::by(25).apply((1 << 56) - 1), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(1 << 56), i32::MAX);
+        assert_eq!(Narrowing::by(25).apply(-(1 << 56)), i32::MIN);
+        assert_eq!(Narrowing::by(31).apply(-1), -1);
+        assert_eq!(Narrowing::by(31).apply(3 << 30), 1);
+    }
+}
