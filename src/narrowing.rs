@@ -49,9 +49,30 @@ impl Narrowing {
     }
 }
 
+/// `sum`/2^`SHIFT`, rounded down, within ±2^`BITS` to 2^(32 − `SHIFT`) where it is beyond: the high word is held by one
+/// instruction, and the low one follows.
+#[inline]
+pub(crate) fn narrowed<const SHIFT: u32, const BITS: u32>(sum: i64) -> i32 {
+    let most = 1_i32.wrapping_shl(BITS.wrapping_add(SHIFT).wrapping_sub(32));
+    let high = (sum.wrapping_shr(32) as i32).clamp(most.wrapping_neg(), most.wrapping_sub(1));
+    let low = (sum as u32).wrapping_shr(SHIFT).cast_signed();
+    high.wrapping_shl(32_u32.wrapping_sub(SHIFT)) | low
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Narrowing;
+    use super::{Narrowing, narrowed};
+
+    #[test]
+    fn a_known_shift_saturates_but_for_what_the_low_word_holds() {
+        for sum in [0, 1, -1, 1 << 40, -(1 << 40), (1 << 51) - 1, -(1 << 51)] {
+            assert_eq!(i64::from(narrowed::<20, 31>(sum)), sum >> 20);
+        }
+        for sum in [1_i64 << 51, 1 << 60, i64::MAX] {
+            assert!(narrowed::<20, 31>(sum) >= i32::MAX - 4095);
+            assert!(narrowed::<20, 31>(-sum) <= i32::MIN + 4095);
+        }
+    }
 
     #[test]
     fn what_does_not_fit_saturates() {

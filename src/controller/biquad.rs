@@ -7,6 +7,7 @@
 
 use core::f64::consts::TAU;
 
+use crate::narrowing::narrowed;
 use crate::units::{Command, RangeError, checked};
 
 const FRAC: u32 = Command::FRAC_NBITS;
@@ -116,7 +117,7 @@ impl State {
             .wrapping_add(product(b2, x2))
             .wrapping_add(product(a1, y1))
             .wrapping_add(product(a2, y2));
-        let y = narrowed(sum);
+        let y = narrowed::<FRAC, FRAC>(sum);
         self.cut = sum as u32 & CUT;
         self.x = [x, x1];
         self.y = [y, y1];
@@ -133,13 +134,4 @@ const fn product(one: i32, other: i32) -> i64 {
 #[inline]
 pub(super) fn bounded(value: i32) -> i32 {
     value.clamp(-FULL, FULL.wrapping_sub(1))
-}
-
-/// `sum`/2³⁰ within ± full command, to four LSB of it where it is beyond: the high word is held, and the low one follows.
-#[inline]
-fn narrowed(sum: i64) -> i32 {
-    const HIGHEST: i32 = 1 << (2 * FRAC - 32);
-    let high = (sum.wrapping_shr(32) as i32).clamp(-HIGHEST, HIGHEST.wrapping_sub(1));
-    let low = (sum as u32).wrapping_shr(FRAC).cast_signed();
-    high.wrapping_shl(32 - FRAC) | low
 }

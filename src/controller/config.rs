@@ -117,6 +117,8 @@ pub struct Config {
     feedforward_narrowing: Narrowing,
     feedforward_offset: i64,
     pub(super) turning: TurningConfig,
+    /// Ticks within which a change of the jerk counts.
+    pub(super) horizon: u32,
     pub(super) friction: FrictionConfig,
     pub(super) dead_time: DeadTimeConfig,
 }
@@ -197,9 +199,13 @@ impl Config {
         };
         // Before the filters, which let a steady command through by 1/(1 + Σ taps).
         let held = held * (1.0 + extras.taps.iter().sum::<f64>());
+        let turning = TurningConfig::new(gains);
+        let friction = FrictionConfig::new(&extras.friction)?;
+        let learning = LearningConfig::new(gains, delay, bias_share, extras.learning_noise)?;
+        let horizons = [turning.horizon(), friction.horizon(), learning.horizon()];
         Ok(Self {
             moving,
-            learning: LearningConfig::new(gains, delay, bias_share, extras.learning_noise)?,
+            learning,
             held: scaled(held.min(1.9), Command::FRAC_NBITS),
             rest: RestConfig::new(&rest)?,
             bias: scaled(bias_share, Command::FRAC_NBITS),
@@ -211,8 +217,9 @@ impl Config {
             feedforward_narrowing: Narrowing::by(feedforward_shift),
             feedforward_offset: shifted(feedforward_offset, feedforward_shift),
             filter,
-            turning: TurningConfig::new(gains),
-            friction: FrictionConfig::new(&extras.friction)?,
+            horizon: horizons.into_iter().fold(0, u32::max),
+            turning,
+            friction,
             dead_time: DeadTimeConfig::new(extras.dead_ticks, bias_share, extras.least_command)?,
             deadband: scaled(
                 checked("deadband_d", deadband_d, 0.0, 1000.0)?,

@@ -30,6 +30,7 @@ pub struct Config {
     tap_count: usize,
     /// 1/(1 + Σcᵢ), Q2.30.
     steady_gain: i32,
+    is_on: bool,
 }
 
 impl Config {
@@ -60,13 +61,15 @@ impl Config {
                 config.section_count = config.section_count.wrapping_add(1);
             }
         }
+        config.is_on = config.section_count != 0 || config.tap_count != 0;
         Ok(config)
     }
 
     /// There is something to do.
+    #[inline]
     #[must_use]
     pub const fn is_on(&self) -> bool {
-        self.section_count != 0 || self.tap_count != 0
+        self.is_on
     }
 
     /// What `feedback` comes to after a long time, Q.30; without filters it passes as it is.

@@ -34,10 +34,11 @@ impl State {
     /// Adds `increment`, ki·e.
     #[inline]
     pub fn add(&mut self, increment: i64) {
-        self.sum = self
-            .sum
-            .wrapping_add(increment)
-            .clamp(FULL.wrapping_neg(), FULL);
+        let sum = self.sum.wrapping_add(increment);
+        // By the high word, which costs an instruction; the low one stays.
+        const HIGHEST: i32 = (FULL >> 32) as i32;
+        let high = (sum.wrapping_shr(32) as i32).clamp(-HIGHEST, HIGHEST.wrapping_sub(1));
+        self.sum = i64::from(high).wrapping_shl(32) | i64::from(sum as u32);
     }
 
     /// Takes over `command`, Q.30.

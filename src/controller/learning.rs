@@ -21,6 +21,7 @@ use super::config::{Gains, SETPOINTS, weight};
 use super::turning::Config as Turning;
 use crate::estimator::observer::Line;
 use crate::estimator::{Delay, Estimate, saturate};
+use crate::narrowing::narrowed;
 use crate::setpoint::Setpoint;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
@@ -129,6 +130,11 @@ impl Config {
     #[must_use]
     pub const fn is_on(&self) -> bool {
         self.noise != 0
+    }
+
+    /// Whole ticks of the lead.
+    pub(super) const fn horizon(&self) -> u32 {
+        self.lead.wrapping_shr(LEAD_FRAC)
     }
 
     /// Terms of v, a and j in command, with [`TERM_FRAC`].
@@ -253,10 +259,10 @@ impl State {
             && setpoint.velocity.to_bits().unsigned_abs() >= config.least_speed
     }
 
-    /// What is to be added to the law, Q.30.
+    /// What is to be added to the law, Q.30; `turns` where the jerk of the setpoint may change within the feedforward's lead.
     #[inline]
-    pub fn add(&mut self, setpoint: &Setpoint) -> i32 {
-        self.added = self.addition.command(setpoint);
+    pub fn add(&mut self, setpoint: &Setpoint, turns: bool) -> i32 {
+        self.added = self.addition.command(setpoint, turns);
         self.added
     }
 
@@ -264,9 +270,9 @@ impl State {
     #[cold]
     #[inline(never)]
     pub fn learn(&mut self, config: &Config, setpoint: &Setpoint) -> i32 {
-        let before = self.addition.command(setpoint);
+        let before = self.addition.command(setpoint, true);
         self.take(config, setpoint);
-        let after = self.addition.command(setpoint);
+        let after = self.addition.command(setpoint, true);
         after.saturating_sub(before)
     }
 
@@ -392,13 +398,18 @@ impl Addition {
 
     /// Command for a setpoint, Q.30; saturates.
     #[inline]
-    fn command(&self, setpoint: &Setpoint) -> i32 {
+    fn command(&self, setpoint: &Setpoint, turns: bool) -> i32 {
         let [by_v, by_a, by_j] = self.weights.map(i64::from);
         let sum = by_v
             .wrapping_mul(i64::from(setpoint.velocity.to_bits()))
             .wrapping_add(by_a.wrapping_mul(i64::from(setpoint.acceleration.to_bits())))
             .wrapping_add(by_j.wrapping_mul(i64::from(setpoint.jerk.to_bits())));
-        saturate(sum.wrapping_shr(WEIGHT_FRAC)).saturating_add(self.turning.command(setpoint))
+        let command = narrowed::<WEIGHT_FRAC, 31>(sum);
+        if turns {
+            command.saturating_add(self.turning.command(setpoint))
+        } else {
+            command
+        }
     }
 }
 

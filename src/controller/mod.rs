@@ -65,7 +65,7 @@ pub struct Controller {
     filter: filter::State,
     friction: friction::State,
     rest: rest::State,
-    /// What of the last demand goes against friction, and what was learned, Q.30.
+    /// What of the last demand goes against friction or into the dead time, and what was learned, Q.30.
     withheld: i32,
     dead_time: dead_time::State,
     /// There is a jump to be taken up: `start_from` is set, or something is left in `transfer`.
@@ -75,6 +75,17 @@ pub struct Controller {
     /// The next demand is to start from this output.
     start_from: Option<Command>,
     learning: learning::State,
+}
+
+/// What a tick's law is made of.
+#[derive(Clone, Copy)]
+struct Tick<'a> {
+    setpoint: &'a Setpoint,
+    estimate: &'a Estimate,
+    active: ActiveLimits,
+    /// Following error less the deadband, and its change.
+    error: i32,
+    change: i32,
 }
 
 /// What the controller asks for.
@@ -161,17 +172,67 @@ impl Controller {
             self.fresh = false;
             self.previous_error = error;
         }
+        let change = error.saturating_sub(self.previous_error);
+        self.previous_error = error;
+        self.previous_following_error = following_error.to_bits();
+        let tick = Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        };
+        let command = match self.at_rest(setpoint, error) {
+            None => self.law(tick, None),
+            Some(verdict) => self.law_at_rest(setpoint, estimate, active, [error, change], verdict),
+        };
+        Demand {
+            command: Command::from_bits(command),
+            following_error,
+        }
+    }
+
+    // Taken apart: what is handed on as it came has to be in memory in every tick.
+    #[inline(never)]
+    fn law_at_rest(
+        &mut self,
+        setpoint: &Setpoint,
+        estimate: &Estimate,
+        active: ActiveLimits,
+        [error, change]: [i32; 2],
+        verdict: Verdict,
+    ) -> i32 {
+        let tick = Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        };
+        self.law(tick, Some(verdict))
+    }
+
+    /// The law, Q.30. Inlined once for motion, where nothing has to be asked about rest, and once for that.
+    #[inline(always)]
+    fn law(&mut self, tick: Tick<'_>, at_rest: Option<Verdict>) -> i32 {
+        let Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        } = tick;
         let signals = [
             error,
-            error.saturating_sub(self.previous_error),
+            change,
             estimate.velocity.to_bits(),
             estimate.acceleration.to_bits(),
             setpoint.velocity.to_bits(),
             setpoint.acceleration.to_bits(),
             setpoint.jerk.to_bits(),
         ];
-        self.previous_error = error;
-        self.previous_following_error = following_error.to_bits();
+        // The jerk may change within the feedforward's lead.
+        let turns = setpoint.turn.ticks <= self.config.horizon;
         let calm = self.is_calm(error, setpoint);
         let set = if calm {
             &self.config.calm
@@ -179,7 +240,6 @@ impl Controller {
             &self.config.moving
         };
         let (mut law, integral_gain) = (set.weigh(&signals), set.integral_gain);
-        let at_rest = self.at_rest(setpoint, error);
         if calm != self.was_calm {
             self.was_calm = calm;
             if at_rest == Some(Verdict::Within) {
@@ -189,7 +249,9 @@ impl Controller {
         if self.integrates(at_rest) {
             let increment = i64::from(error).wrapping_mul(i64::from(integral_gain));
             // Not further into a limit of the output.
-            if !(increment > 0 && active.high || increment < 0 && active.low) {
+            if !(active.is_limited()
+                && (increment > 0 && active.high || increment < 0 && active.low))
+            {
                 self.integral.add(increment);
             }
         }
@@ -197,14 +259,19 @@ impl Controller {
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
-        law = law.saturating_add(self.config.turning.command(setpoint));
-        self.withheld = 0;
-        if self.config.friction.is_on() {
-            law = self.against_friction(law, setpoint, error, at_rest, estimate);
+        if turns {
+            law = law.saturating_add(self.config.turning.command(setpoint));
         }
+        let mut withheld = 0;
+        if self.config.friction.is_on() {
+            (law, withheld) = self.against_friction(law, tick, turns, at_rest);
+        }
+        let mut lost = 0;
         if self.config.dead_time.is_on() {
-            let (config, lost) = (&self.config.dead_time, self.withheld);
-            law = self.dead_time.step(config, law, lost, at_rest.is_some());
+            let config = &self.config.dead_time;
+            (law, lost) = self
+                .dead_time
+                .step(config, law, withheld, at_rest.is_some());
         }
         if self.config.learning.is_on() {
             let config = &self.config.learning;
@@ -212,18 +279,15 @@ impl Controller {
                 let changed = self.learning.learn(config, setpoint);
                 self.integral.give_way(changed);
             }
-            let added = self.learning.add(setpoint);
+            let added = self.learning.add(setpoint, turns);
             law = law.saturating_add(added);
-            self.withheld = self.withheld.saturating_add(added);
+            withheld = withheld.saturating_add(added);
         }
-        let command = if self.jumps {
+        self.withheld = withheld.saturating_add(lost);
+        if self.jumps {
             self.without_jump(law)
         } else {
             law
-        };
-        Demand {
-            command: Command::from_bits(command),
-            following_error,
         }
     }
 
@@ -232,7 +296,7 @@ impl Controller {
     #[inline]
     #[must_use]
     pub const fn withheld(&self) -> Command {
-        Command::from_bits(self.withheld.saturating_add(self.dead_time.lost()))
+        Command::from_bits(self.withheld)
     }
 
     /// Other gains on an `error` that stays as it is: the integral takes over what they give less. What they make of the
@@ -273,32 +337,32 @@ impl Controller {
         }
     }
 
-    /// `law` with what goes against friction: in motion a level that goes with the setpoint; at rest, where an error stands, a
-    /// push in place of the law, of which static friction takes up what it can.
-    #[inline]
+    /// `law` with what goes against friction, and that itself: in motion a level that goes with the setpoint; at rest, where an
+    /// error stands, a push in place of the law, of which static friction takes up what it can.
+    #[inline(always)]
     fn against_friction(
         &mut self,
         law: i32,
-        setpoint: &Setpoint,
-        error: i32,
+        tick: Tick<'_>,
+        turns: bool,
         at_rest: Option<Verdict>,
-        estimate: &Estimate,
-    ) -> i32 {
+    ) -> (i32, i32) {
         match at_rest {
             Some(verdict @ (Verdict::Within | Verdict::Near)) if self.config.rest.pushes() => {
-                self.pushed(law, error, verdict, estimate.velocity.to_bits())
+                self.pushed(law, tick.error, verdict, tick.estimate.velocity.to_bits())
             }
             _ => {
                 let config = &self.config.friction;
-                let level = self.friction.step(config, setpoint, &self.learning);
-                self.withheld = level;
-                law.saturating_add(level)
+                let level = self
+                    .friction
+                    .step_where(config, tick.setpoint, turns, &self.learning);
+                (law.saturating_add(level), level)
             }
         }
     }
 
     #[inline(never)]
-    fn pushed(&mut self, law: i32, error: i32, verdict: Verdict, velocity: i32) -> i32 {
+    fn pushed(&mut self, law: i32, error: i32, verdict: Verdict, velocity: i32) -> (i32, i32) {
         self.friction.let_go();
         let bias = self.config.bias;
         let held = self.learning.scaled(self.config.rest.held());
@@ -310,8 +374,8 @@ impl Controller {
             velocity,
         };
         let law = law.saturating_add(self.rest.push(&self.config.rest, &standing));
-        self.withheld = law.saturating_sub(bias).clamp(held.wrapping_neg(), held);
-        law
+        let withheld = law.saturating_sub(bias);
+        (law, withheld.clamp(held.wrapping_neg(), held))
     }
 
     /// The feedback part through the filters, and what passes by them.

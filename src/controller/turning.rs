@@ -60,6 +60,11 @@ impl Config {
         }
     }
 
+    /// Whole ticks of τ.
+    pub(super) const fn horizon(&self) -> u32 {
+        self.lead.wrapping_shr(LEAD_FRAC)
+    }
+
     /// Δu, Q.30; saturates.
     #[inline]
     pub(super) fn command(&self, setpoint: &Setpoint) -> i32 {
