@@ -1,5 +1,7 @@
 //! From 64 bits to 32 by a shift that is not known beforehand.
 
+use crate::estimator::saturate;
+
 /// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Narrowing {
@@ -31,6 +33,24 @@ impl Narrowing {
         self.half
     }
 
+    /// `sum`/2ˢ, rounded down, and `more`; only the whole saturates.
+    #[inline]
+    pub fn apply_and_add(self, sum: i64, more: i32) -> i32 {
+        let high = sum.wrapping_shr(32) as i32;
+        if high >= self.half || high < self.half.wrapping_neg() {
+            self.beyond(sum, more)
+        } else {
+            self.apply(sum).saturating_add(more)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn beyond(self, sum: i64, more: i32) -> i32 {
+        let shift = self.half.trailing_zeros().wrapping_add(1);
+        saturate(sum.wrapping_shr(shift).saturating_add(i64::from(more)))
+    }
+
     /// `sum`/2ˢ, rounded down, saturating.
     #[inline]
     pub const fn apply(self, sum: i64) -> i32 {
@@ -49,11 +69,11 @@ impl Narrowing {
     }
 }
 
-/// `sum`/2^`SHIFT`, rounded down, within ±2^`BITS` to 2^(32 − `SHIFT`) where it is beyond: the high word is held by one
-/// instruction, and the low one follows.
+/// `sum`/2^`SHIFT`, rounded down; beyond 32 bits within 2^(32 − `SHIFT`) of their end: the high word is held by one
+/// instruction, and the low one stays as it is.
 #[inline]
-pub(crate) fn narrowed<const SHIFT: u32, const BITS: u32>(sum: i64) -> i32 {
-    let most = 1_i32.wrapping_shl(BITS.wrapping_add(SHIFT).wrapping_sub(32));
+pub(crate) fn narrowed<const SHIFT: u32>(sum: i64) -> i32 {
+    let most = 1_i32.wrapping_shl(SHIFT.wrapping_sub(1));
     let high = (sum.wrapping_shr(32) as i32).clamp(most.wrapping_neg(), most.wrapping_sub(1));
     let low = (sum as u32).wrapping_shr(SHIFT).cast_signed();
     high.wrapping_shl(32_u32.wrapping_sub(SHIFT)) | low
@@ -66,11 +86,11 @@ mod tests {
     #[test]
     fn a_known_shift_saturates_but_for_what_the_low_word_holds() {
         for sum in [0, 1, -1, 1 << 40, -(1 << 40), (1 << 51) - 1, -(1 << 51)] {
-            assert_eq!(i64::from(narrowed::<20, 31>(sum)), sum >> 20);
+            assert_eq!(i64::from(narrowed::<20>(sum)), sum >> 20);
         }
         for sum in [1_i64 << 51, 1 << 60, i64::MAX] {
-            assert!(narrowed::<20, 31>(sum) >= i32::MAX - 4095);
-            assert!(narrowed::<20, 31>(-sum) <= i32::MIN + 4095);
+            assert!(narrowed::<20>(sum) >= i32::MAX - 4095);
+            assert!(narrowed::<20>(-sum) <= i32::MIN + 4095);
         }
     }
 

@@ -7,7 +7,6 @@
 
 use core::f64::consts::TAU;
 
-use crate::narrowing::narrowed;
 use crate::units::{Command, RangeError, checked};
 
 const FRAC: u32 = Command::FRAC_NBITS;
@@ -117,7 +116,7 @@ impl State {
             .wrapping_add(product(b2, x2))
             .wrapping_add(product(a1, y1))
             .wrapping_add(product(a2, y2));
-        let y = narrowed::<FRAC, FRAC>(sum);
+        let y = narrowed(sum);
         self.cut = sum as u32 & CUT;
         self.x = [x, x1];
         self.y = [y, y1];
@@ -134,4 +133,22 @@ const fn product(one: i32, other: i32) -> i64 {
 #[inline]
 pub(super) fn bounded(value: i32) -> i32 {
     value.clamp(-FULL, FULL.wrapping_sub(1))
+}
+
+/// `sum`/2³⁰ within ± full command.
+#[inline]
+fn narrowed(sum: i64) -> i32 {
+    // By the high word, for both ends at once.
+    const HIGHEST: u32 = 1 << (2 * FRAC - 32);
+    let high = sum.wrapping_shr(32) as u32;
+    if high.wrapping_add(HIGHEST) < 2 * HIGHEST {
+        sum.wrapping_shr(FRAC) as i32
+    } else {
+        full_of(sum)
+    }
+}
+
+#[cold]
+fn full_of(sum: i64) -> i32 {
+    if sum < 0 { -FULL } else { FULL }
 }

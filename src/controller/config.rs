@@ -279,12 +279,12 @@ impl GainSet {
         })
     }
 
-    /// Weighted sum of the signals, Q.30, without filters with the bias; saturates. The weights add up to less than 2³¹, so
+    /// Weighted sum of the signals and `more`, Q.30, without filters with the bias; saturates. The weights add up to less than 2³¹, so
     /// the sum of products stays within ±2⁶².
     #[inline]
-    pub(super) fn weigh(&self, signals: &[i32; TERMS]) -> i32 {
+    pub(super) fn weigh(&self, signals: &[i32; TERMS], more: i32) -> i32 {
         self.narrowing
-            .apply(weighed(&self.weights, signals, self.offset))
+            .apply_and_add(weighed(&self.weights, signals, self.offset), more)
     }
 }
 

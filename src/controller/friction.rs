@@ -155,7 +155,7 @@ impl Config {
             .wrapping_shl(SHIFT)
             .wrapping_add(i64::from(setpoint.acceleration.to_bits()).wrapping_mul(lead))
             .wrapping_add(i64::from(setpoint.jerk.to_bits()).wrapping_mul(half_square));
-        let velocity = narrowed::<SHIFT, 31>(sum);
+        let velocity = narrowed::<SHIFT>(sum);
         if turns && let Some(rest) = rest_of(self.lead[0] as u32, LEAD_FRAC, setpoint) {
             return velocity.saturating_add(gained(rest, setpoint));
         }

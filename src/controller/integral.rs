@@ -35,10 +35,14 @@ impl State {
     #[inline]
     pub fn add(&mut self, increment: i64) {
         let sum = self.sum.wrapping_add(increment);
-        // By the high word, which costs an instruction; the low one stays.
-        const HIGHEST: i32 = (FULL >> 32) as i32;
-        let high = (sum.wrapping_shr(32) as i32).clamp(-HIGHEST, HIGHEST.wrapping_sub(1));
-        self.sum = i64::from(high).wrapping_shl(32) | i64::from(sum as u32);
+        // By the high word, for both ends at once.
+        const HIGHEST: u32 = (FULL >> 32) as u32;
+        let high = sum.wrapping_shr(32) as u32;
+        self.sum = if high.wrapping_add(HIGHEST) < 2 * HIGHEST {
+            sum
+        } else {
+            held(sum)
+        };
     }
 
     /// Takes over `command`, Q.30.
@@ -72,4 +76,9 @@ impl State {
     pub const fn rest(&mut self) {
         self.sum = self.at_rest;
     }
+}
+
+#[cold]
+fn held(sum: i64) -> i64 {
+    sum.clamp(FULL.wrapping_neg(), FULL)
 }

@@ -404,7 +404,7 @@ impl Addition {
             .wrapping_mul(i64::from(setpoint.velocity.to_bits()))
             .wrapping_add(by_a.wrapping_mul(i64::from(setpoint.acceleration.to_bits())))
             .wrapping_add(by_j.wrapping_mul(i64::from(setpoint.jerk.to_bits())));
-        let command = narrowed::<WEIGHT_FRAC, 31>(sum);
+        let command = narrowed::<WEIGHT_FRAC>(sum);
         if turns {
             command.saturating_add(self.turning.command(setpoint))
         } else {

@@ -234,20 +234,19 @@ impl Controller {
         // The jerk may change within the feedforward's lead.
         let turns = setpoint.turn.ticks <= self.config.horizon;
         let calm = self.is_calm(error, setpoint);
-        let set = if calm {
-            &self.config.calm
-        } else {
-            &self.config.moving
-        };
-        let (mut law, integral_gain) = (set.weigh(&signals), set.integral_gain);
         if calm != self.was_calm {
             self.was_calm = calm;
             if at_rest == Some(Verdict::Within) {
                 self.keep_push(calm, error);
             }
         }
+        let set = if calm {
+            &self.config.calm
+        } else {
+            &self.config.moving
+        };
         if self.integrates(at_rest) {
-            let increment = i64::from(error).wrapping_mul(i64::from(integral_gain));
+            let increment = i64::from(error).wrapping_mul(i64::from(set.integral_gain));
             // Not further into a limit of the output.
             if !(active.is_limited()
                 && (increment > 0 && active.high || increment < 0 && active.low))
@@ -255,7 +254,7 @@ impl Controller {
                 self.integral.add(increment);
             }
         }
-        law = law.saturating_add(self.integral.value());
+        let mut law = set.weigh(&signals, self.integral.value());
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
@@ -308,7 +307,9 @@ impl Controller {
         } = &self.config;
         let (before, after) = if calm { (moving, slow) } else { (slow, moving) };
         let signals = [error, 0, 0, 0, 0, 0, 0];
-        let less = before.weigh(&signals).saturating_sub(after.weigh(&signals));
+        let less = before
+            .weigh(&signals, 0)
+            .saturating_sub(after.weigh(&signals, 0));
         self.integral.take(less);
     }
 
