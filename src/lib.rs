@@ -55,6 +55,7 @@ pub mod estimator;
 pub mod hal;
 pub mod homing;
 pub mod identification;
+mod narrowing;
 pub mod output;
 pub mod parameter_table;
 pub mod params;

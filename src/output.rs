@@ -50,6 +50,8 @@ pub struct Output {
     config: Config,
     command: i32,
     active: ActiveLimits,
+    /// There is such a limit.
+    is_held: bool,
 }
 
 impl Output {
@@ -64,6 +66,7 @@ impl Output {
                 low: false,
                 slew: false,
             },
+            is_held: false,
         }
     }
 
@@ -84,9 +87,17 @@ impl Output {
         self.active
     }
 
+    /// A limit held the last output back.
+    #[inline]
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        self.is_held
+    }
+
     /// Zero at once, without slew: the axis is off.
     pub const fn off(&mut self) -> Command {
         self.command = 0;
+        self.is_held = false;
         self.active = ActiveLimits {
             high: false,
             low: false,
@@ -105,19 +116,22 @@ impl Output {
         let highest = self.command.saturating_add(slew);
         let command = bounded(in_range, lowest, highest);
         self.command = command;
-        self.active = ActiveLimits {
-            high: false,
-            low: false,
-            slew: false,
-        };
-        if command != demand {
-            self.active = ActiveLimits {
-                high: demand > command,
-                low: demand < command,
-                slew: in_range != command,
-            };
+        if command != demand || self.is_held {
+            self.note(demand, in_range);
         }
         Command::from_bits(command)
+    }
+
+    /// A limit holds the output back, or held the last one.
+    #[cold]
+    const fn note(&mut self, demand: i32, in_range: i32) {
+        let command = self.command;
+        self.is_held = command != demand;
+        self.active = ActiveLimits {
+            high: demand > command,
+            low: demand < command,
+            slew: in_range != command && command != demand,
+        };
     }
 }
 

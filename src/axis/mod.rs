@@ -175,19 +175,22 @@ impl<'m> Axis<'m> {
             self.note_context(position, told);
         }
         let outputs = &mut self.outputs;
-        outputs.command = if permit > Permit::ZeroVolts {
-            self.output.step(demand.command)
+        let was_held = self.output.is_held();
+        if permit > Permit::ZeroVolts {
+            outputs.command = self.output.step(demand.command);
+            outputs.enabled = true;
         } else {
             outputs.moving = false;
-            self.output.off()
-        };
-        outputs.limits = self.output.active_limits();
-        outputs.enabled = permit > Permit::Off;
-        outputs.brake_released = self.supervisor.brake_released();
-        outputs.state = self.supervisor.state();
-        outputs.fault = self.supervisor.fault();
-        outputs.warnings = self.supervisor.warnings();
-        outputs.refused = self.supervisor.is_refused();
+            outputs.command = self.output.off();
+            outputs.enabled = permit > Permit::Off;
+        }
+        if was_held | self.output.is_held() {
+            outputs.limits = self.output.active_limits();
+        }
+        if self.supervisor.take_news() {
+            self.tell_status();
+        }
+        let outputs = &self.outputs;
         let is_faulted = outputs.fault.is_some();
         if observation.has_index() | inputs.lines.encoder_lost | is_faulted {
             self.watch_place(&observation, inputs.lines.encoder_lost);
@@ -195,6 +198,18 @@ impl<'m> Axis<'m> {
         let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);
         outputs
+    }
+
+    /// What the supervisor has to say.
+    #[cold]
+    #[inline(never)]
+    fn tell_status(&mut self) {
+        let outputs = &mut self.outputs;
+        outputs.brake_released = self.supervisor.brake_released();
+        outputs.state = self.supervisor.state();
+        outputs.fault = self.supervisor.fault();
+        outputs.warnings = self.supervisor.warnings();
+        outputs.refused = self.supervisor.is_refused();
     }
 
     /// The control law. A function of its own: so it has the registers to itself.

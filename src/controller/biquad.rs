@@ -11,9 +11,9 @@ use crate::units::{Command, RangeError, checked};
 
 const FRAC: u32 = Command::FRAC_NBITS;
 /// Full command: inputs and outputs are held to it, so that five products add up in 64 bits.
-const FULL: i64 = 1 << FRAC;
+const FULL: i32 = 1 << FRAC;
 /// What is cut off by the shift.
-const CUT: i64 = FULL.wrapping_sub(1);
+const CUT: u32 = (1 << FRAC) - 1;
 
 /// Lowest frequency of a section, of the tick rate: below it the coefficients are too coarse.
 pub const LOWEST_SHARE: f64 = 1e-4;
@@ -24,7 +24,8 @@ pub const HIGHEST_SHARE: f64 = 0.45;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Section {
     b: [i32; 3],
-    a: [i32; 2],
+    /// −a₁ and −a₂: so all products are added.
+    minus_a: [i32; 2],
 }
 
 /// Coefficients b₀…b₂ and a₁, a₂ in `f64`.
@@ -69,7 +70,7 @@ impl Section {
         let b1 = libm::ldexp(1.0, FRAC.cast_signed()) + a1 + a2 - b0 - b2;
         Self {
             b: [b0 as i32, b1 as i32, b2 as i32],
-            a: [a1 as i32, a2 as i32],
+            minus_a: [-a1 as i32, -a2 as i32],
         }
     }
 
@@ -77,7 +78,7 @@ impl Section {
     #[must_use]
     pub fn coefficients(&self) -> Coefficients {
         let real = |bits: i32| libm::ldexp(f64::from(bits), FRAC.cast_signed().wrapping_neg());
-        (self.b.map(real), self.a.map(real))
+        (self.b.map(real), self.minus_a.map(|bits| -real(bits)))
     }
 }
 
@@ -87,7 +88,7 @@ pub struct State {
     x: [i32; 2],
     y: [i32; 2],
     /// What the last shift cut off.
-    cut: i64,
+    cut: u32,
 }
 
 impl State {
@@ -105,19 +106,18 @@ impl State {
     #[inline]
     pub fn step(&mut self, section: &Section, x: i32) -> i32 {
         let [b0, b1, b2] = section.b;
-        let [a1, a2] = section.a;
+        let [a1, a2] = section.minus_a;
         let [x1, x2] = self.x;
         let [y1, y2] = self.y;
         // |b₀| + |b₁| + |b₂| + |a₁| + |a₂| ≤ 7, times full command: below 2⁶³.
-        let sum = self
-            .cut
+        let sum = i64::from(self.cut)
             .wrapping_add(product(b0, x))
             .wrapping_add(product(b1, x1))
             .wrapping_add(product(b2, x2))
-            .wrapping_sub(product(a1, y1))
-            .wrapping_sub(product(a2, y2));
-        let y = bounded(sum.wrapping_shr(FRAC));
-        self.cut = sum & CUT;
+            .wrapping_add(product(a1, y1))
+            .wrapping_add(product(a2, y2));
+        let y = narrowed(sum);
+        self.cut = sum as u32 & CUT;
         self.x = [x, x1];
         self.y = [y, y1];
         y
@@ -129,15 +129,26 @@ const fn product(one: i32, other: i32) -> i64 {
     (one as i64).wrapping_mul(other as i64)
 }
 
-/// `value` within ± full command.
+/// `value` within ± full command, and an LSB less at the upper end: one instruction.
 #[inline]
-pub(super) const fn bounded(value: i64) -> i32 {
-    // One comparison for both ends: below the lower one the sum is large without a sign.
-    if value.wrapping_add(FULL).cast_unsigned() <= FULL.wrapping_mul(2).cast_unsigned() {
-        value as i32
-    } else if value < 0 {
-        FULL.wrapping_neg() as i32
+pub(super) fn bounded(value: i32) -> i32 {
+    value.clamp(-FULL, FULL.wrapping_sub(1))
+}
+
+/// `sum`/2³⁰ within ± full command.
+#[inline]
+fn narrowed(sum: i64) -> i32 {
+    // By the high word, for both ends at once.
+    const HIGHEST: u32 = 1 << (2 * FRAC - 32);
+    let high = sum.wrapping_shr(32) as u32;
+    if high.wrapping_add(HIGHEST) < 2 * HIGHEST {
+        sum.wrapping_shr(FRAC) as i32
     } else {
-        FULL as i32
+        full_of(sum)
     }
+}
+
+#[cold]
+fn full_of(sum: i64) -> i32 {
+    if sum < 0 { -FULL } else { FULL }
 }

@@ -10,6 +10,7 @@ use super::learning::Config as LearningConfig;
 use super::rest::{Config as RestConfig, Rest};
 use super::turning::Config as TurningConfig;
 use crate::estimator::Delay;
+use crate::narrowing::Narrowing;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
 /// Weighted inputs of the law, the integral apart: those of the feedback part, the setpoints last.
@@ -77,12 +78,12 @@ pub struct Calm {
 }
 
 /// Weights of the law, by one of its sets of gains.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct GainSet {
     /// Of the following error, its change, the estimates of v and a, the setpoints of v, a and j. Without filters the
     /// feedforward is in the latter.
     weights: [i32; TERMS],
-    shift: u32,
+    narrowing: Narrowing,
     /// Half of what is shifted out, and without filters the bias.
     offset: i64,
     pub(super) integral_gain: i32,
@@ -113,9 +114,11 @@ pub struct Config {
     pub(super) filter: FilterConfig,
     /// Where there are filters, the feedforward and the bias, which pass by them.
     feedforward: [i32; SETPOINTS],
-    feedforward_shift: u32,
+    feedforward_narrowing: Narrowing,
     feedforward_offset: i64,
     pub(super) turning: TurningConfig,
+    /// Ticks within which a change of the jerk counts.
+    pub(super) horizon: u32,
     pub(super) friction: FrictionConfig,
     pub(super) dead_time: DeadTimeConfig,
 }
@@ -196,9 +199,13 @@ impl Config {
         };
         // Before the filters, which let a steady command through by 1/(1 + Σ taps).
         let held = held * (1.0 + extras.taps.iter().sum::<f64>());
+        let turning = TurningConfig::new(gains);
+        let friction = FrictionConfig::new(&extras.friction)?;
+        let learning = LearningConfig::new(gains, delay, bias_share, extras.learning_noise)?;
+        let horizons = [turning.horizon(), friction.horizon(), learning.horizon()];
         Ok(Self {
             moving,
-            learning: LearningConfig::new(gains, delay, bias_share, extras.learning_noise)?,
+            learning,
             held: scaled(held.min(1.9), Command::FRAC_NBITS),
             rest: RestConfig::new(&rest)?,
             bias: scaled(bias_share, Command::FRAC_NBITS),
@@ -207,11 +214,12 @@ impl Config {
             calm_error,
             calm_ticks,
             feedforward,
-            feedforward_shift,
+            feedforward_narrowing: Narrowing::by(feedforward_shift),
             feedforward_offset: shifted(feedforward_offset, feedforward_shift),
             filter,
-            turning: TurningConfig::new(gains),
-            friction: FrictionConfig::new(&extras.friction)?,
+            horizon: horizons.into_iter().fold(0, u32::max),
+            turning,
+            friction,
             dead_time: DeadTimeConfig::new(extras.dead_ticks, bias_share, extras.least_command)?,
             deadband: scaled(
                 checked("deadband_d", deadband_d, 0.0, 1000.0)?,
@@ -238,11 +246,14 @@ impl Config {
         }
     }
 
-    /// Where there are filters, bias and feedforward of the setpoints of v, a and j, Q.30.
+    /// Where there are filters, bias and feedforward of the setpoints of v, a and j, Q.30; saturates.
     #[inline]
-    pub(super) fn ahead(&self, setpoints: &[i32; SETPOINTS]) -> i64 {
-        weighed(&self.feedforward, setpoints, self.feedforward_offset)
-            .wrapping_shr(self.feedforward_shift)
+    pub(super) fn ahead(&self, setpoints: &[i32; SETPOINTS]) -> i32 {
+        self.feedforward_narrowing.apply(weighed(
+            &self.feedforward,
+            setpoints,
+            self.feedforward_offset,
+        ))
     }
 }
 
@@ -257,7 +268,7 @@ impl GainSet {
         let integral = checked("integral_gain_per_d_tick", gains.integral, 0.0, 1.9e-3)?;
         Ok(Self {
             weights,
-            shift,
+            narrowing: Narrowing::by(shift),
             offset: shifted(bias, shift),
             integral_gain: scaled(
                 integral,
@@ -268,11 +279,12 @@ impl GainSet {
         })
     }
 
-    /// Weighted sum of the signals, Q.30, without filters with the bias. The weights add up to less than 2³¹, so the sum
-    /// of products stays within ±2⁶².
+    /// Weighted sum of the signals and `more`, Q.30, without filters with the bias; saturates. The weights add up to less than 2³¹, so
+    /// the sum of products stays within ±2⁶².
     #[inline]
-    pub(super) fn weigh(&self, signals: &[i32; TERMS]) -> i64 {
-        weighed(&self.weights, signals, self.offset).wrapping_shr(self.shift)
+    pub(super) fn weigh(&self, signals: &[i32; TERMS], more: i32) -> i32 {
+        self.narrowing
+            .apply_and_add(weighed(&self.weights, signals, self.offset), more)
     }
 }
 
@@ -345,8 +357,8 @@ fn quantise<const N: usize>(exact: &[f64; N]) -> Result<([i32; N], u32), RangeEr
     let total: f64 = exact.iter().map(|weight| libm::fabs(*weight)).sum();
     // Rounding adds at most half a unit to each weight.
     let room = f64::from(i32::MAX) - N as f64;
-    checked("sum of the controller's gains", total, 0.0, room)?;
-    let mut shift = 0_u32;
+    checked("sum of the controller's gains", total, 0.0, room / 2.0)?;
+    let mut shift = 1_u32;
     while shift < MAX_WEIGHT_SHIFT && libm::ldexp(total, shift.wrapping_add(1).cast_signed()) < room
     {
         shift = shift.wrapping_add(1);

@@ -44,8 +44,14 @@ impl Config {
 
 /// Part of what is owed that a tick gives back: 2⁻ⁿ.
 const SHARE: u32 = 3;
+/// Fractional bits of what is owed.
+const OWED_FRAC: u32 = 24;
+/// Bits that a command drops for that.
+const OWED_SHIFT: u32 = Command::FRAC_NBITS - OWED_FRAC;
 /// Most that is owed, full commands: 64.
-const MOST: i64 = 64 << Command::FRAC_NBITS;
+const MOST: i32 = 64 << OWED_FRAC;
+/// Most that is given back in a tick, full commands: 2.
+const MOST_SHARE: i32 = 2 << OWED_FRAC;
 
 /// What the drive still owes.
 #[derive(Clone, Debug, Default)]
@@ -54,10 +60,8 @@ pub struct State {
     sign: i32,
     /// Ticks that the drive will stand for.
     left: u32,
-    /// Q.30.
-    owed: i64,
-    /// What of the last command the drive does not answer, friction apart, Q.30.
-    lost: i64,
+    /// With [`OWED_FRAC`].
+    owed: i32,
 }
 
 impl State {
@@ -68,50 +72,56 @@ impl State {
             sign: 0,
             left: 0,
             owed: 0,
-            lost: 0,
         }
     }
 
-    /// What of the last command the drive does not answer, friction apart, Q.30.
+    /// `law`, Q.30, with what is given back in this tick, and what of it the drive does not answer; `friction` is the part of it
+    /// that moves nothing and is in neither.
     #[inline]
-    #[must_use]
-    pub const fn lost(&self) -> i64 {
-        self.lost
-    }
-
-    /// `law`, Q.30, with what is given back in this tick; `friction` is the part of it that moves nothing.
-    #[inline]
-    pub fn step(&mut self, config: &Config, law: i64, friction: i32, resting: bool) -> i64 {
-        let net = law.wrapping_sub(i64::from(config.zero));
-        let has_sign = net.unsigned_abs() > u64::from(config.least);
-        let sign = if net < 0 { -1 } else { 1 };
-        if has_sign && sign != self.sign {
-            // The first sign is no reversal.
-            if self.sign != 0 {
-                self.left = config.ticks;
-            }
-            self.sign = sign;
-        }
-        self.lost = if self.left > 0 {
-            net.wrapping_sub(i64::from(friction))
-        } else {
-            0
-        };
-        if resting {
-            self.owed = 0;
-            self.left = self.left.saturating_sub(1);
-            return law;
+    pub fn step(&mut self, config: &Config, law: i32, friction: i32, resting: bool) -> (i32, i32) {
+        let net = law.saturating_sub(config.zero);
+        if (net ^ self.sign) < 0 || self.sign == 0 {
+            self.turn(config, net);
         }
         if self.left > 0 {
-            self.left = self.left.wrapping_sub(1);
-            self.owed = self
-                .owed
-                .wrapping_add(self.lost)
-                .clamp(MOST.wrapping_neg(), MOST);
-            return law;
+            let lost = net.saturating_sub(friction);
+            self.stand(lost, resting);
+            return (law, lost);
+        }
+        if resting {
+            self.owed = 0;
+            return (law, 0);
         }
         let share = self.owed.wrapping_shr(SHARE);
         self.owed = self.owed.wrapping_sub(share);
-        law.wrapping_add(share)
+        // These bounds are one instruction.
+        let share = share.clamp(-MOST_SHARE, MOST_SHARE.wrapping_sub(1));
+        (law.saturating_add(share.wrapping_shl(OWED_SHIFT)), 0)
+    }
+
+    /// A command of another sign than the last: if it has one.
+    #[cold]
+    fn turn(&mut self, config: &Config, net: i32) {
+        if net.unsigned_abs() <= config.least {
+            return;
+        }
+        // The first sign is no reversal.
+        if self.sign != 0 {
+            self.left = config.ticks;
+        }
+        self.sign = if net < 0 { -1 } else { 1 };
+    }
+
+    /// A tick in which the drive stands, and does not answer `lost`.
+    #[cold]
+    fn stand(&mut self, lost: i32, resting: bool) {
+        self.left = self.left.wrapping_sub(1);
+        self.owed = if resting {
+            0
+        } else {
+            self.owed
+                .saturating_add(lost.wrapping_shr(OWED_SHIFT))
+                .clamp(-MOST, MOST)
+        };
     }
 }

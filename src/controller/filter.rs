@@ -30,6 +30,7 @@ pub struct Config {
     tap_count: usize,
     /// 1/(1 + Σcᵢ), Q2.30.
     steady_gain: i32,
+    is_on: bool,
 }
 
 impl Config {
@@ -60,24 +61,26 @@ impl Config {
                 config.section_count = config.section_count.wrapping_add(1);
             }
         }
+        config.is_on = config.section_count != 0 || config.tap_count != 0;
         Ok(config)
     }
 
     /// There is something to do.
+    #[inline]
     #[must_use]
     pub const fn is_on(&self) -> bool {
-        self.section_count != 0 || self.tap_count != 0
+        self.is_on
     }
 
     /// What `feedback` comes to after a long time, Q.30; without filters it passes as it is.
     #[must_use]
-    pub fn steady(&self, feedback: i64) -> i64 {
+    pub fn steady(&self, feedback: i32) -> i32 {
         if !self.is_on() {
             return feedback;
         }
         i64::from(bounded(feedback))
             .wrapping_mul(i64::from(self.steady_gain))
-            .wrapping_shr(Command::FRAC_NBITS)
+            .wrapping_shr(Command::FRAC_NBITS) as i32
     }
 
     /// The sections in use.
@@ -118,7 +121,7 @@ impl State {
     /// As after a long time under `feedback`, Q.30.
     #[cold]
     #[inline(never)]
-    pub fn steady(config: &Config, feedback: i64) -> Self {
+    pub fn steady(config: &Config, feedback: i32) -> Self {
         let value = bounded(config.steady(feedback));
         Self {
             sections: [SectionState::steady(value); MAX_SECTIONS],
@@ -128,8 +131,8 @@ impl State {
 
     /// One tick.
     #[inline]
-    pub fn step(&mut self, config: &Config, feedback: i64) -> i32 {
-        let mut value = bounded(feedback.wrapping_sub(self.foreseen(config)));
+    pub fn step(&mut self, config: &Config, feedback: i32) -> i32 {
+        let mut value = bounded(feedback.saturating_sub(self.foreseen(config)));
         // No loop: two of them are fewer than what it takes to go round.
         let ([one, other], [first, second]) = (&config.sections, &mut self.sections);
         if config.section_count != 0 {
@@ -145,7 +148,7 @@ impl State {
 
     /// Σ cᵢ·u₋ᵢ; makes room for the newest. Five products at most add up in 64 bits, the taps' sum is below 2.
     #[inline]
-    fn foreseen(&mut self, config: &Config) -> i64 {
+    fn foreseen(&mut self, config: &Config) -> i32 {
         let mut sum = 0_i64;
         let mut newer = 0;
         for (tap, past) in config
@@ -157,6 +160,6 @@ impl State {
             sum = sum.wrapping_add(i64::from(*tap).wrapping_mul(i64::from(*past)));
             core::mem::swap(past, &mut newer);
         }
-        sum.wrapping_shr(Command::FRAC_NBITS)
+        sum.wrapping_shr(Command::FRAC_NBITS) as i32
     }
 }

@@ -14,6 +14,7 @@
 use super::learning::State as Learned;
 use super::turning::{change, rest_of};
 use crate::estimator::saturate;
+use crate::narrowing::narrowed;
 use crate::setpoint::Setpoint;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
@@ -47,7 +48,7 @@ pub struct Config {
     least_speed: u32,
     /// 2²⁰/v_s: times a speed in Q11.20 its high word is v/v_s in Q.8.
     per_stribeck: u32,
-    /// τ, Q.16, and τ²/2, Q.8.
+    /// τ, Q.16, and τ²/2, Q.11: times an acceleration and a jerk they have the same fractional bits.
     lead: [i32; 2],
     /// Ticks before a start from rest from which on it is prepared for.
     notice: u32,
@@ -115,10 +116,15 @@ impl Config {
         setpoint.turn.ticks <= self.notice
     }
 
+    /// Whole ticks of τ.
+    pub(super) const fn horizon(&self) -> u32 {
+        (self.lead[0] as u32).wrapping_shr(LEAD_FRAC)
+    }
+
     /// The level that a motion asks for.
     #[inline]
-    fn target(&self, setpoint: &Setpoint) -> i32 {
-        let velocity = self.velocity_ahead(setpoint);
+    fn target(&self, setpoint: &Setpoint, turns: bool) -> i32 {
+        let velocity = self.velocity_ahead(setpoint, turns);
         let speed = velocity.unsigned_abs();
         if speed <= self.least_speed {
             return self.notice_of(setpoint);
@@ -142,19 +148,18 @@ impl Config {
 
     /// v + τ·a + τ²·j/2, Q11.20; saturates.
     #[inline]
-    fn velocity_ahead(&self, setpoint: &Setpoint) -> i32 {
-        const BY_ACCELERATION: u32 = Acceleration::FRAC_NBITS + LEAD_FRAC - Velocity::FRAC_NBITS;
-        const BY_JERK: u32 = Jerk::FRAC_NBITS + SQUARE_FRAC - Velocity::FRAC_NBITS;
+    fn velocity_ahead(&self, setpoint: &Setpoint, turns: bool) -> i32 {
+        const SHIFT: u32 = Acceleration::FRAC_NBITS + LEAD_FRAC - Velocity::FRAC_NBITS;
         let [lead, half_square] = self.lead.map(i64::from);
-        let by_acceleration = i64::from(setpoint.acceleration.to_bits()).wrapping_mul(lead);
-        let by_jerk = i64::from(setpoint.jerk.to_bits()).wrapping_mul(half_square);
-        let mut velocity = i64::from(setpoint.velocity.to_bits())
-            .wrapping_add(by_acceleration.wrapping_shr(BY_ACCELERATION))
-            .wrapping_add(by_jerk.wrapping_shr(BY_JERK));
-        if let Some(rest) = rest_of(self.lead[0] as u32, LEAD_FRAC, setpoint) {
-            velocity = velocity.wrapping_add(gained(rest, setpoint));
+        let sum = i64::from(setpoint.velocity.to_bits())
+            .wrapping_shl(SHIFT)
+            .wrapping_add(i64::from(setpoint.acceleration.to_bits()).wrapping_mul(lead))
+            .wrapping_add(i64::from(setpoint.jerk.to_bits()).wrapping_mul(half_square));
+        let velocity = narrowed::<SHIFT>(sum);
+        if turns && let Some(rest) = rest_of(self.lead[0] as u32, LEAD_FRAC, setpoint) {
+            return velocity.saturating_add(gained(rest, setpoint));
         }
-        saturate(velocity)
+        velocity
     }
 
     /// What turns the sign of the command in time, before a motion from rest: a drive's dead time is over when it starts.
@@ -176,14 +181,15 @@ impl Config {
 /// r²/2·Δj: what a change of the jerk `rest` ticks (Q.16) before adds to a velocity, Q11.20.
 #[cold]
 #[inline(never)]
-fn gained(rest: u32, setpoint: &Setpoint) -> i64 {
+fn gained(rest: u32, setpoint: &Setpoint) -> i32 {
     const BY_JERK: u32 = Jerk::FRAC_NBITS + SQUARE_FRAC - Velocity::FRAC_NBITS;
     let half_square = u64::from(rest)
         .wrapping_mul(u64::from(rest))
         .wrapping_shr(2 * LEAD_FRAC + 1 - SQUARE_FRAC);
-    i64::from(change(setpoint))
+    let gained = i64::from(change(setpoint))
         .wrapping_mul(half_square.cast_signed())
-        .wrapping_shr(BY_JERK)
+        .wrapping_shr(BY_JERK);
+    saturate(gained)
 }
 
 /// The level before a start, of the kinetic one: 2⁻ⁿ.
@@ -192,7 +198,7 @@ const NOTICE_SHIFT: u32 = 1;
 /// Fractional bits of τ.
 const LEAD_FRAC: u32 = 16;
 /// Fractional bits of τ²/2.
-const SQUARE_FRAC: u32 = 8;
+const SQUARE_FRAC: u32 = 11;
 
 /// The level in force, Q.30.
 #[derive(Clone, Debug, Default)]
@@ -223,7 +229,19 @@ impl State {
     /// One tick; the level after it. Friction is torque: where the drive's gain turned out to be another, so does its command.
     #[inline]
     pub fn step(&mut self, config: &Config, setpoint: &Setpoint, learned: &Learned) -> i32 {
-        let target = config.target(setpoint);
+        self.step_where(config, setpoint, true, learned)
+    }
+
+    /// The same where it is known whether the jerk of the setpoint may change within τ (`turns`).
+    #[inline(always)]
+    pub(super) fn step_where(
+        &mut self,
+        config: &Config,
+        setpoint: &Setpoint,
+        turns: bool,
+        learned: &Learned,
+    ) -> i32 {
+        let target = config.target(setpoint, turns);
         let gap = learned.scaled(target).wrapping_sub(self.level);
         self.level = self
             .level

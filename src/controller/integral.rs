@@ -27,32 +27,34 @@ impl State {
 
     /// Q.30.
     #[inline]
-    pub const fn value(&self) -> i64 {
-        self.sum.wrapping_shr(INTEGRAL_SHIFT)
+    pub const fn value(&self) -> i32 {
+        self.sum.wrapping_shr(INTEGRAL_SHIFT) as i32
     }
 
     /// Adds `increment`, ki·e.
     #[inline]
     pub fn add(&mut self, increment: i64) {
-        self.sum = self
-            .sum
-            .wrapping_add(increment)
-            .clamp(FULL.wrapping_neg(), FULL);
+        let sum = self.sum.wrapping_add(increment);
+        // By the high word, for both ends at once.
+        const HIGHEST: u32 = (FULL >> 32) as u32;
+        let high = sum.wrapping_shr(32) as u32;
+        self.sum = if high.wrapping_add(HIGHEST) < 2 * HIGHEST {
+            sum
+        } else {
+            held(sum)
+        };
     }
 
     /// Takes over `command`, Q.30.
-    pub fn take(&mut self, command: i64) {
-        let most = i64::from(Command::ONE.to_bits());
-        self.add(
-            command
-                .clamp(most.wrapping_neg(), most)
-                .wrapping_shl(INTEGRAL_SHIFT),
-        );
+    pub fn take(&mut self, command: i32) {
+        let most = Command::ONE.to_bits();
+        let held = command.clamp(most.wrapping_neg(), most);
+        self.add(i64::from(held).wrapping_shl(INTEGRAL_SHIFT));
     }
 
     /// Leaves to another term what that has begun to give, `command`, Q.30: up to all of itself.
-    #[inline]
-    pub fn give_way(&mut self, command: i64) {
+    #[cold]
+    pub fn give_way(&mut self, command: i32) {
         if command != 0 {
             let most = self.value();
             self.take(command.clamp(most.min(0), most.max(0)).wrapping_neg());
@@ -74,4 +76,9 @@ impl State {
     pub const fn rest(&mut self) {
         self.sum = self.at_rest;
     }
+}
+
+#[cold]
+fn held(sum: i64) -> i64 {
+    sum.clamp(FULL.wrapping_neg(), FULL)
 }

@@ -21,6 +21,7 @@ use super::config::{Gains, SETPOINTS, weight};
 use super::turning::Config as Turning;
 use crate::estimator::observer::Line;
 use crate::estimator::{Delay, Estimate, saturate};
+use crate::narrowing::narrowed;
 use crate::setpoint::Setpoint;
 use crate::units::{Acceleration, Command, Jerk, RangeError, Velocity, checked};
 
@@ -131,6 +132,11 @@ impl Config {
         self.noise != 0
     }
 
+    /// Whole ticks of the lead.
+    pub(super) const fn horizon(&self) -> u32 {
+        self.lead.wrapping_shr(LEAD_FRAC)
+    }
+
     /// Terms of v, a and j in command, with [`TERM_FRAC`].
     fn terms(&self, signals: [i32; SETPOINTS]) -> [i32; SETPOINTS] {
         let mut terms = [0; SETPOINTS];
@@ -161,11 +167,11 @@ pub struct State {
     command: i32,
     velocity: i32,
     acceleration: i32,
-    /// Jerk, change of the low-passed acceleration in a tick, in its format.
-    jerk: i32,
+    /// The low-passed acceleration of the tick before.
+    last_acceleration: i32,
     ticks: u32,
     /// What is added now, Q.30.
-    added: i64,
+    added: i32,
     addition: Addition,
     shares: [i32; 3],
     /// P.
@@ -191,7 +197,7 @@ impl State {
             command: 0,
             velocity: 0,
             acceleration: 0,
-            jerk: 0,
+            last_acceleration: 0,
             ticks: 0,
             added: 0,
             addition: Addition {
@@ -215,7 +221,7 @@ impl State {
     /// What has been added to the last demand, Q.30.
     #[inline]
     #[must_use]
-    pub const fn added(&self) -> i64 {
+    pub const fn added(&self) -> i32 {
         self.added
     }
 
@@ -233,43 +239,44 @@ impl State {
     /// Takes the command of the tick just past, as an observer is told of it, and what came of it.
     #[inline]
     pub fn note(&mut self, config: &Config, command: Option<Command>, estimate: &Estimate) {
-        let whole = command.map(|command| {
-            Command::from_bits(saturate(
-                i64::from(command.to_bits()).wrapping_add(self.added),
-            ))
-        });
+        let whole =
+            command.map(|command| Command::from_bits(command.to_bits().saturating_add(self.added)));
         let Some(whole) = self.line.pass(whole, config.delay) else {
             return;
         };
         let command = whole.wrapping_shr(TERM_SHIFT).wrapping_sub(config.bias);
         smooth(&mut self.command, command);
         smooth(&mut self.velocity, estimate.velocity.to_bits());
-        let before = self.acceleration;
+        self.last_acceleration = self.acceleration;
         smooth(&mut self.acceleration, estimate.acceleration.to_bits());
-        self.jerk = self
-            .acceleration
-            .saturating_sub(before)
-            .saturating_mul(1 << (Jerk::FRAC_NBITS - Acceleration::FRAC_NBITS));
     }
 
-    /// What is to be added to the law, Q.30, and by how much that has changed by learning.
+    /// Counts a tick: true in every fourth one in motion, in which there is to be [`learned`](Self::learn).
     #[inline]
-    pub fn add(&mut self, config: &Config, setpoint: &Setpoint) -> (i64, i64) {
+    pub fn is_due(&mut self, config: &Config, setpoint: &Setpoint) -> bool {
         self.ticks = self.ticks.wrapping_add(1);
-        let is_due = self.ticks.trailing_zeros() >= SMOOTHING;
-        let mut changed = 0;
-        if is_due && setpoint.velocity.to_bits().unsigned_abs() >= config.least_speed {
-            let before = self.addition.command(setpoint);
-            self.learn(config, setpoint);
-            changed = self.addition.command(setpoint).wrapping_sub(before);
-        }
-        self.added = self.addition.command(setpoint);
-        (self.added, changed)
+        self.ticks.trailing_zeros() >= SMOOTHING
+            && setpoint.velocity.to_bits().unsigned_abs() >= config.least_speed
     }
 
+    /// What is to be added to the law, Q.30; `turns` where the jerk of the setpoint may change within the feedforward's lead.
+    #[inline]
+    pub fn add(&mut self, setpoint: &Setpoint, turns: bool) -> i32 {
+        self.added = self.addition.command(setpoint, turns);
+        self.added
+    }
+
+    /// Learns from what has been noted; by how much that changes what is to be added, Q.30.
     #[cold]
     #[inline(never)]
-    fn learn(&mut self, config: &Config, setpoint: &Setpoint) {
+    pub fn learn(&mut self, config: &Config, setpoint: &Setpoint) -> i32 {
+        let before = self.addition.command(setpoint, true);
+        self.take(config, setpoint);
+        let after = self.addition.command(setpoint, true);
+        after.saturating_sub(before)
+    }
+
+    fn take(&mut self, config: &Config, setpoint: &Setpoint) {
         let error = self.error(config);
         let step = saturate(i64::from(error).wrapping_sub(i64::from(self.last_error)));
         self.last_error = error;
@@ -293,12 +300,16 @@ impl State {
     fn error(&self, config: &Config) -> i32 {
         const HALF_A: u32 = Acceleration::FRAC_NBITS - Velocity::FRAC_NBITS + 1;
         const HALF_J: u32 = Jerk::FRAC_NBITS - Acceleration::FRAC_NBITS + 1;
+        // Change of the acceleration in a tick.
+        let jerk = self
+            .acceleration
+            .saturating_sub(self.last_acceleration)
+            .saturating_mul(1 << (Jerk::FRAC_NBITS - Acceleration::FRAC_NBITS));
         let terms = config.terms([
             self.velocity
                 .saturating_sub(self.acceleration.wrapping_shr(HALF_A)),
-            self.acceleration
-                .saturating_sub(self.jerk.wrapping_shr(HALF_J)),
-            self.jerk,
+            self.acceleration.saturating_sub(jerk.wrapping_shr(HALF_J)),
+            jerk,
         ]);
         let mut error = i64::from(self.command);
         for (term, share) in terms.into_iter().zip(self.shares) {
@@ -385,15 +396,20 @@ impl Addition {
         }
     }
 
-    /// Command for a setpoint, Q.30.
+    /// Command for a setpoint, Q.30; saturates.
     #[inline]
-    fn command(&self, setpoint: &Setpoint) -> i64 {
+    fn command(&self, setpoint: &Setpoint, turns: bool) -> i32 {
         let [by_v, by_a, by_j] = self.weights.map(i64::from);
-        by_v.wrapping_mul(i64::from(setpoint.velocity.to_bits()))
+        let sum = by_v
+            .wrapping_mul(i64::from(setpoint.velocity.to_bits()))
             .wrapping_add(by_a.wrapping_mul(i64::from(setpoint.acceleration.to_bits())))
-            .wrapping_add(by_j.wrapping_mul(i64::from(setpoint.jerk.to_bits())))
-            .wrapping_shr(WEIGHT_FRAC)
-            .wrapping_add(self.turning.command(setpoint))
+            .wrapping_add(by_j.wrapping_mul(i64::from(setpoint.jerk.to_bits())));
+        let command = narrowed::<WEIGHT_FRAC>(sum);
+        if turns {
+            command.saturating_add(self.turning.command(setpoint))
+        } else {
+            command
+        }
     }
 }
 

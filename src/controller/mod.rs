@@ -65,14 +65,27 @@ pub struct Controller {
     filter: filter::State,
     friction: friction::State,
     rest: rest::State,
-    /// What of the last demand goes against friction, and what was learned, Q.30.
+    /// What of the last demand goes against friction or into the dead time, and what was learned, Q.30.
     withheld: i32,
     dead_time: dead_time::State,
+    /// There is a jump to be taken up: `start_from` is set, or something is left in `transfer`.
+    jumps: bool,
     /// What is left of the last jump of the law, Q.30; a jump across the range of a command needs 33 bits.
     transfer: i64,
     /// The next demand is to start from this output.
     start_from: Option<Command>,
     learning: learning::State,
+}
+
+/// What a tick's law is made of.
+#[derive(Clone, Copy)]
+struct Tick<'a> {
+    setpoint: &'a Setpoint,
+    estimate: &'a Estimate,
+    active: ActiveLimits,
+    /// Following error less the deadband, and its change.
+    error: i32,
+    change: i32,
 }
 
 /// What the controller asks for.
@@ -101,6 +114,7 @@ impl Controller {
             previous_error: 0,
             previous_following_error: 0,
             fresh: true,
+            jumps: true,
             transfer: 0,
             start_from: Some(Command::ZERO),
             learning: learning::State::new(),
@@ -123,6 +137,7 @@ impl Controller {
         // A new deadband must not look like a change of the error.
         self.previous_error = config.apply_deadband(self.previous_following_error);
         self.start_from = Some(output);
+        self.jumps = true;
     }
 
     /// Takes what a tick shows beside what [`step`](Self::step) acts on: by how much the count changed, and what an observer is
@@ -157,61 +172,121 @@ impl Controller {
             self.fresh = false;
             self.previous_error = error;
         }
+        let change = error.saturating_sub(self.previous_error);
+        self.previous_error = error;
+        self.previous_following_error = following_error.to_bits();
+        let tick = Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        };
+        let command = match self.at_rest(setpoint, error) {
+            None => self.law(tick, None),
+            Some(verdict) => self.law_at_rest(setpoint, estimate, active, [error, change], verdict),
+        };
+        Demand {
+            command: Command::from_bits(command),
+            following_error,
+        }
+    }
+
+    // Taken apart: what is handed on as it came has to be in memory in every tick.
+    #[inline(never)]
+    fn law_at_rest(
+        &mut self,
+        setpoint: &Setpoint,
+        estimate: &Estimate,
+        active: ActiveLimits,
+        [error, change]: [i32; 2],
+        verdict: Verdict,
+    ) -> i32 {
+        let tick = Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        };
+        self.law(tick, Some(verdict))
+    }
+
+    /// The law, Q.30. Inlined once for motion, where nothing has to be asked about rest, and once for that.
+    #[inline(always)]
+    fn law(&mut self, tick: Tick<'_>, at_rest: Option<Verdict>) -> i32 {
+        let Tick {
+            setpoint,
+            estimate,
+            active,
+            error,
+            change,
+        } = tick;
         let signals = [
             error,
-            error.saturating_sub(self.previous_error),
+            change,
             estimate.velocity.to_bits(),
             estimate.acceleration.to_bits(),
             setpoint.velocity.to_bits(),
             setpoint.acceleration.to_bits(),
             setpoint.jerk.to_bits(),
         ];
-        self.previous_error = error;
-        self.previous_following_error = following_error.to_bits();
+        // The jerk may change within the feedforward's lead.
+        let turns = setpoint.turn.ticks <= self.config.horizon;
         let calm = self.is_calm(error, setpoint);
-        let set = if calm {
-            &self.config.calm
-        } else {
-            &self.config.moving
-        };
-        let (mut law, integral_gain) = (set.weigh(&signals), set.integral_gain);
-        let at_rest = self.at_rest(setpoint, error);
         if calm != self.was_calm {
             self.was_calm = calm;
             if at_rest == Some(Verdict::Within) {
                 self.keep_push(calm, error);
             }
         }
+        let set = if calm {
+            &self.config.calm
+        } else {
+            &self.config.moving
+        };
         if self.integrates(at_rest) {
-            let increment = i64::from(error).wrapping_mul(i64::from(integral_gain));
+            let increment = i64::from(error).wrapping_mul(i64::from(set.integral_gain));
             // Not further into a limit of the output.
-            if !(increment > 0 && active.high || increment < 0 && active.low) {
+            if !(active.is_limited()
+                && (increment > 0 && active.high || increment < 0 && active.low))
+            {
                 self.integral.add(increment);
             }
         }
-        law = law.wrapping_add(self.integral.value());
+        let mut law = set.weigh(&signals, self.integral.value());
         if self.config.filter.is_on() {
             law = self.filtered(law, setpoint);
         }
-        law = law.wrapping_add(self.config.turning.command(setpoint));
-        self.withheld = 0;
-        if self.config.friction.is_on() {
-            law = self.against_friction(law, setpoint, error, at_rest, estimate);
+        if turns {
+            law = law.saturating_add(self.config.turning.command(setpoint));
         }
+        let mut withheld = 0;
+        if self.config.friction.is_on() {
+            (law, withheld) = self.against_friction(law, tick, turns, at_rest);
+        }
+        let mut lost = 0;
         if self.config.dead_time.is_on() {
-            let (config, lost) = (&self.config.dead_time, self.withheld);
-            law = self.dead_time.step(config, law, lost, at_rest.is_some());
+            let config = &self.config.dead_time;
+            (law, lost) = self
+                .dead_time
+                .step(config, law, withheld, at_rest.is_some());
         }
         if self.config.learning.is_on() {
-            let (added, changed) = self.learning.add(&self.config.learning, setpoint);
-            law = law.wrapping_add(added);
-            self.integral.give_way(changed);
-            self.withheld = saturate(i64::from(self.withheld).wrapping_add(added));
+            let config = &self.config.learning;
+            if self.learning.is_due(config, setpoint) {
+                let changed = self.learning.learn(config, setpoint);
+                self.integral.give_way(changed);
+            }
+            let added = self.learning.add(setpoint, turns);
+            law = law.saturating_add(added);
+            withheld = withheld.saturating_add(added);
         }
-        let command = self.without_jump(saturate(law));
-        Demand {
-            command: Command::from_bits(command),
-            following_error,
+        self.withheld = withheld.saturating_add(lost);
+        if self.jumps {
+            self.without_jump(law)
+        } else {
+            law
         }
     }
 
@@ -220,8 +295,7 @@ impl Controller {
     #[inline]
     #[must_use]
     pub const fn withheld(&self) -> Command {
-        let lost = saturate(self.dead_time.lost());
-        Command::from_bits(self.withheld.saturating_add(lost))
+        Command::from_bits(self.withheld)
     }
 
     /// Other gains on an `error` that stays as it is: the integral takes over what they give less. What they make of the
@@ -233,7 +307,9 @@ impl Controller {
         } = &self.config;
         let (before, after) = if calm { (moving, slow) } else { (slow, moving) };
         let signals = [error, 0, 0, 0, 0, 0, 0];
-        let less = before.weigh(&signals).wrapping_sub(after.weigh(&signals));
+        let less = before
+            .weigh(&signals, 0)
+            .saturating_sub(after.weigh(&signals, 0));
         self.integral.take(less);
     }
 
@@ -262,52 +338,52 @@ impl Controller {
         }
     }
 
-    /// `law` with what goes against friction: in motion a level that goes with the setpoint; at rest, where an error stands, a
-    /// push in place of the law, of which static friction takes up what it can.
-    #[inline]
+    /// `law` with what goes against friction, and that itself: in motion a level that goes with the setpoint; at rest, where an
+    /// error stands, a push in place of the law, of which static friction takes up what it can.
+    #[inline(always)]
     fn against_friction(
         &mut self,
-        law: i64,
-        setpoint: &Setpoint,
-        error: i32,
+        law: i32,
+        tick: Tick<'_>,
+        turns: bool,
         at_rest: Option<Verdict>,
-        estimate: &Estimate,
-    ) -> i64 {
+    ) -> (i32, i32) {
         match at_rest {
             Some(verdict @ (Verdict::Within | Verdict::Near)) if self.config.rest.pushes() => {
-                self.pushed(law, error, verdict, estimate.velocity.to_bits())
+                self.pushed(law, tick.error, verdict, tick.estimate.velocity.to_bits())
             }
             _ => {
                 let config = &self.config.friction;
-                let level = self.friction.step(config, setpoint, &self.learning);
-                self.withheld = level;
-                law.wrapping_add(i64::from(level))
+                let level = self
+                    .friction
+                    .step_where(config, tick.setpoint, turns, &self.learning);
+                (law.saturating_add(level), level)
             }
         }
     }
 
     #[inline(never)]
-    fn pushed(&mut self, law: i64, error: i32, verdict: Verdict, velocity: i32) -> i64 {
+    fn pushed(&mut self, law: i32, error: i32, verdict: Verdict, velocity: i32) -> (i32, i32) {
         self.friction.let_go();
-        let bias = i64::from(self.config.bias);
+        let bias = self.config.bias;
         let held = self.learning.scaled(self.config.rest.held());
         let standing = rest::Standing {
             error,
             verdict,
-            law: law.wrapping_sub(bias),
+            law: law.saturating_sub(bias),
             held,
             velocity,
         };
-        let law = law.wrapping_add(self.rest.push(&self.config.rest, &standing));
-        self.withheld = saturate(law.wrapping_sub(bias)).clamp(held.wrapping_neg(), held);
-        law
+        let law = law.saturating_add(self.rest.push(&self.config.rest, &standing));
+        let withheld = law.saturating_sub(bias);
+        (law, withheld.clamp(held.wrapping_neg(), held))
     }
 
     /// The feedback part through the filters, and what passes by them.
     #[inline(never)]
-    fn filtered(&mut self, feedback: i64, setpoint: &Setpoint) -> i64 {
+    fn filtered(&mut self, feedback: i32, setpoint: &Setpoint) -> i32 {
         let config = &self.config;
-        if self.start_from.is_some() {
+        if self.jumps && self.start_from.is_some() {
             self.filter = filter::State::steady(&config.filter, feedback);
         }
         let filtered = self.filter.step(&config.filter, feedback);
@@ -316,7 +392,7 @@ impl Controller {
             setpoint.acceleration.to_bits(),
             setpoint.jerk.to_bits(),
         ];
-        config.ahead(&setpoints).wrapping_add(i64::from(filtered))
+        config.ahead(&setpoints).saturating_add(filtered)
     }
 
     /// Whether the gains for slow motion count.
@@ -343,14 +419,13 @@ impl Controller {
     }
 
     /// Adds the transfer term, which starts as whatever keeps the output where it was.
+    #[cold]
     fn without_jump(&mut self, law: i32) -> i32 {
-        if let Some(output) = self.start_from.take() {
-            self.transfer = i64::from(output.to_bits()).wrapping_sub(i64::from(law));
-        } else if self.transfer != 0 {
-            self.transfer = decayed(self.transfer, self.config.transfer_decay);
-        } else {
-            return law;
-        }
+        self.transfer = match self.start_from.take() {
+            Some(output) => i64::from(output.to_bits()).wrapping_sub(i64::from(law)),
+            None => decayed(self.transfer, self.config.transfer_decay),
+        };
+        self.jumps = self.transfer != 0;
         saturate(i64::from(law).wrapping_add(self.transfer))
     }
 }

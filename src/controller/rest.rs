@@ -136,7 +136,7 @@ pub struct Standing {
     /// What is to become of it.
     pub verdict: Verdict,
     /// The law less its bias, Q.30.
-    pub law: i64,
+    pub law: i32,
     /// Static friction, Q.30.
     pub held: i32,
     /// Estimated velocity, Q11.20.
@@ -244,7 +244,7 @@ impl State {
     }
 
     /// One tick of a push: what is to be added to the law, Q.30.
-    pub fn push(&mut self, config: &Config, standing: &Standing) -> i64 {
+    pub fn push(&mut self, config: &Config, standing: &Standing) -> i32 {
         if self.phase == Phase::None {
             if standing.verdict != Verdict::Near {
                 return 0;
@@ -254,11 +254,12 @@ impl State {
         self.follow(config, standing);
         match self.phase {
             Phase::None => 0,
-            Phase::Rising | Phase::Slipping => {
-                i64::from(self.push.wrapping_mul(self.direction)).wrapping_sub(standing.law)
-            }
+            Phase::Rising | Phase::Slipping => self
+                .push
+                .wrapping_mul(self.direction)
+                .saturating_sub(standing.law),
             Phase::Settling => {
-                let half = i64::from(standing.held.wrapping_shr(1));
+                let half = standing.held.wrapping_shr(1);
                 standing.law.clamp(half.wrapping_neg(), half).wrapping_neg()
             }
         }
@@ -270,11 +271,10 @@ impl State {
         self.direction = standing.error.signum();
         self.counts = 0;
         self.still = 0;
-        let towards = standing.law.wrapping_mul(i64::from(self.direction));
-        let half = i64::from(standing.held.wrapping_shr(1));
+        let towards = standing.law.saturating_mul(self.direction);
+        let half = standing.held.wrapping_shr(1);
         let least = half.wrapping_add(towards.min(0));
-        let most = i64::from(Command::ONE.to_bits());
-        self.push = least.max(towards).clamp(0, most) as i32;
+        self.push = least.max(towards).clamp(0, Command::ONE.to_bits());
     }
 
     /// From phase to phase.

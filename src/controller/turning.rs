@@ -60,11 +60,16 @@ impl Config {
         }
     }
 
-    /// Δu, Q.30.
+    /// Whole ticks of τ.
+    pub(super) const fn horizon(&self) -> u32 {
+        self.lead.wrapping_shr(LEAD_FRAC)
+    }
+
+    /// Δu, Q.30; saturates.
     #[inline]
-    pub(super) fn command(&self, setpoint: &Setpoint) -> i64 {
+    pub(super) fn command(&self, setpoint: &Setpoint) -> i32 {
         match rest_of(self.lead, LEAD_FRAC, setpoint) {
-            Some(rest) => self.over(rest, setpoint),
+            Some(rest) => saturate(self.over(rest, setpoint)),
             None => 0,
         }
     }

@@ -71,8 +71,8 @@ struct Phase {
     jerk: Jerk,
     /// j/6 and the creep of the plan.
     position_step: i64,
-    /// j/2.
-    half_jerk: i64,
+    /// j, even.
+    step_of_acceleration: i64,
 }
 
 impl Phase {
@@ -81,7 +81,7 @@ impl Phase {
             remaining_ticks: segment.ticks,
             jerk: jerk_of(segment),
             position_step: segment.sixth().wrapping_add(creep),
-            half_jerk: segment.jerk.wrapping_shr(1),
+            step_of_acceleration: segment.jerk,
         }
     }
 }
@@ -203,7 +203,7 @@ impl Trajectory {
     fn advance(&mut self) {
         let Phase {
             position_step,
-            half_jerk,
+            step_of_acceleration,
             ..
         } = self.phase;
         let State {
@@ -211,12 +211,12 @@ impl Trajectory {
             velocity,
             acceleration,
         } = &mut self.state;
-        let step = velocity
-            .wrapping_add(acceleration.wrapping_shr(1))
-            .wrapping_add(position_step);
+        // Half the acceleration before and half of that after are the gain: both are even.
+        let way = velocity.wrapping_add(acceleration.wrapping_shr(1));
+        let step = way.wrapping_add(position_step);
         *position = position.wrapping_add(i128::from(step));
-        *velocity = velocity.wrapping_add(*acceleration).wrapping_add(half_jerk);
-        *acceleration = acceleration.wrapping_add(half_jerk.wrapping_mul(2));
+        *acceleration = acceleration.wrapping_add(step_of_acceleration);
+        *velocity = way.wrapping_add(acceleration.wrapping_shr(1));
 
         self.remaining_ticks = self.remaining_ticks.wrapping_sub(1);
         self.phase.remaining_ticks = self.phase.remaining_ticks.wrapping_sub(1);

@@ -59,6 +59,7 @@ impl Supervisor {
         if let Some(fault) = self.persisting() {
             return Err(ClearError::CausePersists(fault));
         }
+        self.has_news = true;
         self.sequence.clear();
         self.latch.clear();
         self.watch.forget();

@@ -71,6 +71,8 @@ pub struct Supervisor {
     lines: Lines,
     enable: bool,
     refused: bool,
+    /// Something of what [`status`] tells may be another since it was told.
+    has_news: bool,
 }
 
 impl Supervisor {
@@ -91,6 +93,7 @@ impl Supervisor {
             lines: Lines::default(),
             enable: false,
             refused: false,
+            has_news: true,
         }
     }
 
@@ -138,6 +141,7 @@ impl Supervisor {
         counts: [u16; 2],
         loopback: Loopback,
     ) -> Permit {
+        self.has_news = true;
         self.lines = *lines;
         self.sequence.count_down();
         let is_off = matches!(self.sequence.phase(), Phase::Disabled | Phase::Faulted);
@@ -190,6 +194,7 @@ impl Supervisor {
     /// Looks at what the tick came to, and may take back what was permitted.
     #[inline]
     pub fn review(&mut self, review: &Review<'_>) -> Permit {
+        self.has_news |= self.moving != review.moving;
         self.moving = review.moving;
         self.velocity = review.estimate.velocity.to_bits();
         self.in_loop = review.permit > Permit::ZeroVolts;
@@ -232,6 +237,7 @@ impl Supervisor {
     #[cold]
     #[inline(never)]
     fn judge(&mut self, review: &Judged<'_>) -> Permit {
+        self.has_news = true;
         if let Some(fault) = review.trouble {
             self.trip(Trip::line(fault), review.tick);
         }
@@ -250,6 +256,7 @@ impl Supervisor {
     #[cold]
     #[inline(never)]
     fn review_off(&mut self, review: &Judged<'_>) -> Permit {
+        self.has_news = true;
         self.moving = false;
         self.watch
             .restart(&self.config, review.observation, review.tick);

@@ -36,12 +36,19 @@ impl Supervisor {
     /// Forgets the warnings.
     pub fn clear_warnings(&mut self) {
         self.warnings = FaultSet::default();
+        self.has_news = true;
     }
 
     /// True while enable is asked for anew and refused: a fault is latched, and has to be cleared first.
     #[must_use]
     pub const fn is_refused(&self) -> bool {
         self.refused
+    }
+
+    /// True if state, fault, warnings, refusal or brake may be others since it was asked last.
+    #[inline]
+    pub(crate) const fn take_news(&mut self) -> bool {
+        core::mem::replace(&mut self.has_news, false)
     }
 
     /// True if the loop was closed in the last tick.

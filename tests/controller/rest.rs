@@ -80,7 +80,7 @@ fn a_push_rises_from_half_of_static_friction_to_a_bound() {
 #[test]
 fn it_takes_the_place_of_the_law_and_begins_where_that_stands() {
     let mut state = State::new();
-    let law = (0.8 * HELD * FULL) as i64;
+    let law = (0.8 * HELD * FULL) as i32;
     let standing = Standing {
         law,
         ..standing(3.0, Verdict::Near)

@@ -17,6 +17,7 @@ use super::config::MIN_SAMPLES;
 use super::fit::wide;
 use super::geometry::{GAIN_FRAC, Gains};
 use super::window::{CAPACITY, PLACE_FRAC};
+use crate::narrowing::Narrowing;
 
 /// What a window's length fixes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,15 +160,6 @@ struct Factor {
     narrowing: Narrowing,
 }
 
-/// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Narrowing {
-    /// 2ˢ⁻¹: half a unit of what is left, and where the high word of what still fits ends.
-    half: i32,
-    /// 2³²⁻ˢ.
-    multiplier: u32,
-}
-
 impl Factor {
     /// Of a factor from 2⁻³⁰ to ½: for windows of 4 to 64 samples they are from 2⁻²⁵ to 2⁻³.
     fn new(factor: f64) -> Self {
@@ -187,36 +179,8 @@ impl Factor {
         let low = (value as u32 as u64).wrapping_mul(mantissa);
         let low = low
             .wrapping_shr(32)
-            .wrapping_add(self.narrowing.half.cast_unsigned() as u64);
+            .wrapping_add(self.narrowing.half().cast_unsigned() as u64);
         self.narrowing.apply(high.wrapping_add(low.cast_signed()))
-    }
-}
-
-impl Narrowing {
-    /// By `shift`.
-    fn by(shift: u32) -> Self {
-        let shift = shift.clamp(1, 31);
-        Self {
-            half: 1_i32.wrapping_shl(shift.wrapping_sub(1)),
-            multiplier: 1_u32.wrapping_shl(32_u32.wrapping_sub(shift)),
-        }
-    }
-
-    /// `sum`/2ˢ, rounded down, saturating.
-    #[inline]
-    const fn apply(self, sum: i64) -> i32 {
-        let high = sum.wrapping_shr(32) as i32;
-        if high >= self.half {
-            i32::MAX
-        } else if high < self.half.wrapping_neg() {
-            i32::MIN
-        } else {
-            let low = (sum as u32 as u64)
-                .wrapping_mul(self.multiplier as u64)
-                .wrapping_shr(32) as i32;
-            high.wrapping_mul(self.multiplier.cast_signed())
-                .wrapping_add(low)
-        }
     }
 }
 
@@ -268,16 +232,5 @@ mod tests {
                 before = base;
             }
         }
-    }
-
-    #[test]
-    fn what_does_not_fit_saturates() {
-        assert_eq!(Narrowing::by(25).apply(i64::MAX), i32::MAX);
-        assert_eq!(Narrowing::by(25).apply(i64::MIN), i32::MIN);
-        assert_eq!(Narrowing::by(25).apply((1 << 56) - 1), i32::MAX);
-        assert_eq!(Narrowing::by(25).apply(1 << 56), i32::MAX);
-        assert_eq!(Narrowing::by(25).apply(-(1 << 56)), i32::MIN);
-        assert_eq!(Narrowing::by(31).apply(-1), -1);
-        assert_eq!(Narrowing::by(31).apply(3 << 30), 1);
     }
 }

@@ -15,7 +15,9 @@ use leadscrew::compensation::{CompensationParams, ScrewPoint, ScrewTable, Stretc
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::estimator::paths::{Choice, Paths};
 use leadscrew::hal::{Capture, Encoder};
-use leadscrew::params::{AxisConfig, AxisParams, FilterParams, FrictionParams, ParamError};
+use leadscrew::params::{
+    AxisConfig, AxisParams, ControllerParams, FilterParams, FrictionParams, ParamError,
+};
 use leadscrew::telemetry::Record;
 use leadscrew::units::Position;
 use leadscrew_hal_mock::machine::{Machine, MachineParams};
@@ -97,7 +99,14 @@ fn config(
 ) -> Result<(AxisConfig, f64), ScenarioError> {
     let by_name = |name| Ok::<_, ParamError>(EstimatorConfig::by_name(name)?.expect("it is one"));
     let observer = scenario.tuned(machine, by_name("observer")?, false)?;
+    let tuned = scenario.axis_params(machine, observer)?;
     let params = AxisParams {
+        controller: ControllerParams {
+            feedforward_lead_s: machine.drive.delay_s + 0.5 / TICK_HZ,
+            rest_band_mm: 0.001,
+            learning_noise: 1e-3,
+            ..tuned.controller
+        },
         second_estimator: Some(by_name("polynomial")?),
         paths: Paths {
             display: Choice::Second,
@@ -115,6 +124,7 @@ fn config(
             excess_forward_mm_per_min: 10.0,
             excess_backward_mm_per_min: 10.0,
             dead_time_s: 0.003,
+            lift_s: 0.06,
             ..FrictionParams::default()
         },
         compensation: CompensationParams {
@@ -122,7 +132,7 @@ fn config(
             screw_table: 1.0,
             ..CompensationParams::default()
         },
-        ..scenario.axis_params(machine, observer)?
+        ..tuned
     };
     Ok((params.validate()?, params.motion.counts_per_mm))
 }
