@@ -9,10 +9,6 @@ use crate::telemetry::Record;
 
 /// What came from the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "it lives for a moment, and there is no heap"
-)]
 pub enum Answer<'a> {
     /// The reply to the request of that sequence.
     Reply(u16, Reply<'a>),

@@ -4,6 +4,7 @@ use leadscrew::protocol::decoder::Decoder;
 use leadscrew::protocol::frame::{Channel, FrameBuffer, Header, MAX_BODY, MAX_FRAME, TooLarge};
 use proptest::prelude::*;
 
+use crate::any_bytes::crc32;
 use crate::seeded::seeded;
 
 type Sent = (u8, u32, u16, Vec<u8>);
@@ -30,7 +31,12 @@ fn found<const N: usize>(decoder: &mut Decoder<N>, bytes: &[u8]) -> Vec<Sent> {
     let mut found = Vec::new();
     decoder.feed_all(bytes, |frame, _| {
         let header = frame.header;
-        found.push((header.channel as u8, header.session, header.sequence, frame.body.to_vec()));
+        found.push((
+            header.channel as u8,
+            header.session,
+            header.sequence,
+            frame.body.to_vec(),
+        ));
     });
     found
 }
@@ -49,7 +55,8 @@ fn harm() -> impl Strategy<Value = Harm> {
     prop_oneof![
         (at(), 1..=255_u8).prop_map(|(at, mask)| Harm::Flip(at, mask)),
         (at(), 1..30_usize).prop_map(|(at, count)| Harm::Lose(at, count)),
-        (at(), prop::collection::vec(any::<u8>(), 1..300)).prop_map(|(at, bytes)| Harm::Insert(at, bytes)),
+        (at(), prop::collection::vec(any::<u8>(), 1..300))
+            .prop_map(|(at, bytes)| Harm::Insert(at, bytes)),
         (at(), 1..60_usize).prop_map(|(at, count)| Harm::Repeat(at, count)),
     ]
 }
@@ -176,21 +183,13 @@ fn each_kind_of_wrong_frame_is_counted_as_what_it_is() {
     assert_eq!(found(&mut decoder, &bytes), vec![good]);
 }
 
-/// CRC-32 as of zip, bit by bit.
-pub fn crc32(bytes: &[u8]) -> u32 {
-    let mut sum = u32::MAX;
-    for byte in bytes {
-        sum ^= u32::from(*byte);
-        for _ in 0..8 {
-            sum = (sum >> 1) ^ (0xedb8_8320 * (sum & 1));
-        }
-    }
-    !sum
-}
-
 #[test]
 fn frames_have_a_largest_size() {
-    let header = Header { channel: Channel::Request, session: u32::MAX, sequence: u16::MAX };
+    let header = Header {
+        channel: Channel::Request,
+        session: u32::MAX,
+        sequence: u16::MAX,
+    };
     let mut buffer = FrameBuffer::default();
     assert_eq!(buffer.raw(header, &[7; MAX_BODY]).unwrap().len(), MAX_FRAME);
     assert_eq!(buffer.raw(header, &[7; MAX_BODY + 1]), Err(TooLarge));

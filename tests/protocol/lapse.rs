@@ -29,7 +29,11 @@ fn assert_stops_after(rig: &mut Rig, ticks: u32) {
     let begin = rig.step();
     assert_eq!((begin.state, begin.fault), (State::Stopping, None));
     let limits = rig.way.axis.config().limits;
-    let (v, a, j): (f64, f64, f64) = (100.0, limits.acceleration().to_num(), limits.jerk().to_num());
+    let (v, a, j): (f64, f64, f64) = (
+        100.0,
+        limits.acceleration().to_num(),
+        limits.jerk().to_num(),
+    );
     // From constant speed: v/a + a/j ticks, v/2 times as long.
     let planned = v / a + a / j;
     let mut taken = 0;
@@ -43,18 +47,26 @@ fn assert_stops_after(rig: &mut Rig, ticks: u32) {
         taken += 1;
         assert!(f64::from(taken) < planned + 3.0, "planned {planned} ticks");
     }
-    assert!(f64::from(taken) > planned - 5.0, "{taken} ticks, planned {planned}");
+    assert!(
+        f64::from(taken) > planned - 5.0,
+        "{taken} ticks, planned {planned}"
+    );
     let way: f64 = (last.position - way_from).to_num();
     assert!(way < 0.5 * v * planned + 300.0, "{way} d");
     let end = rig.run(500);
-    assert_eq!((end.state, end.enabled, end.fault), (State::Disabled, false, None));
+    assert_eq!(
+        (end.state, end.enabled, end.fault),
+        (State::Disabled, false, None)
+    );
     assert!(rig.board.machine.truth().shaft.velocity.abs() < 0.05);
 }
 
 #[test]
 fn a_tool_that_falls_silent_stops_the_axis_within_its_plan() {
     let mut rig = at_speed();
-    rig.do_(&Request::RenewLease { seen: rig.told_tick });
+    rig.do_(&Request::RenewLease {
+        seen: rig.told_tick,
+    });
     rig.renew_every = None;
     assert_stops_after(&mut rig, 100);
     assert_eq!(rig.service.holder(), None);

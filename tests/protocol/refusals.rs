@@ -12,7 +12,10 @@ fn numbers_are_in_order_without_a_gap_and_each_says_what_to_do() {
         assert_eq!(refusal as u16, number);
         assert_eq!(Refusal::from_number(number), Some(refusal));
         for text in [refusal.what(), refusal.remedy()] {
-            assert!(text.ends_with('.') && text.trim() == text, "{refusal:?}: {text:?}");
+            assert!(
+                text.ends_with('.') && text.trim() == text,
+                "{refusal:?}: {text:?}"
+            );
         }
     }
     assert_eq!(Refusal::from_number(0), None);
@@ -35,7 +38,10 @@ fn without_a_session_or_a_lease_nothing_is_done() {
         Request::ClearWarnings {},
         Request::ReleaseLease {},
         Request::RenewLease { seen: 0 },
-        Request::SetParameter { name: "output.limit", value: 0.5 },
+        Request::SetParameter {
+            name: "output.limit",
+            value: 0.5,
+        },
     ];
     for request in &motions {
         rig.refused(request, Refusal::LeaseRequired);
@@ -54,19 +60,53 @@ fn orders_that_the_axis_cannot_follow_are_refused_and_it_goes_on() {
     rig.renew_every = Some(30);
     rig.refused(&Rig::move_to(1), Refusal::NotEnabled);
     rig.refused(&Request::Home {}, Refusal::NotReady);
-    rig.ready();
-    let with_feed = |feed_um_per_min| Request::Move { target_nm: 1_000_000, feed_um_per_min };
+    rig.enabled();
+    let with_feed = |feed_um_per_min| Request::Move {
+        target_nm: 1_000_000,
+        feed_um_per_min,
+    };
     for (request, refusal) in [
         (with_feed(0), Refusal::FeedOutOfRange),
         (with_feed(9_000_001), Refusal::FeedOutOfRange),
         (with_feed(u32::MAX), Refusal::FeedOutOfRange),
-        (Request::Jog { feed_um_per_min: i32::MIN }, Refusal::FeedOutOfRange),
-        (Request::Move { target_nm: i64::MIN, feed_um_per_min: 1 }, Refusal::TargetOutOfRange),
-        (Request::Move { target_nm: 1_000_000_000_001, feed_um_per_min: 1 }, Refusal::TargetOutOfRange),
-        (Request::Move { target_nm: 900_000_000_000, feed_um_per_min: 1 }, Refusal::MoveTooLong),
-        (Request::Override { percent: 201 }, Refusal::OverrideOutOfRange),
-        (Request::Home {}, Refusal::NoIndex),
-        (Request::SetParameter { name: "output.limit", value: 0.5 }, Refusal::AxisOn),
+        (
+            Request::Jog {
+                feed_um_per_min: i32::MIN,
+            },
+            Refusal::FeedOutOfRange,
+        ),
+        (
+            Request::Move {
+                target_nm: i64::MIN,
+                feed_um_per_min: 1,
+            },
+            Refusal::TargetOutOfRange,
+        ),
+        (
+            Request::Move {
+                target_nm: 1_000_000_000_001,
+                feed_um_per_min: 1,
+            },
+            Refusal::TargetOutOfRange,
+        ),
+        (
+            Request::Move {
+                target_nm: 900_000_000_000,
+                feed_um_per_min: 1,
+            },
+            Refusal::MoveTooLong,
+        ),
+        (
+            Request::Override { percent: 201 },
+            Refusal::OverrideOutOfRange,
+        ),
+        (
+            Request::SetParameter {
+                name: "output.limit",
+                value: 0.5,
+            },
+            Refusal::AxisOn,
+        ),
     ] {
         rig.refused(&request, refusal);
     }
@@ -83,7 +123,7 @@ fn orders_that_the_axis_cannot_follow_are_refused_and_it_goes_on() {
     rig.do_(&Request::Disable {});
     rig.step();
     rig.do_(&Request::ClearFault {});
-    rig.ready();
+    rig.enabled();
 }
 
 #[test]
@@ -98,12 +138,19 @@ fn a_message_that_is_not_known_is_refused_once_and_its_session_goes_on() {
     };
     // A number of a later version; one that is known, with a byte too many; one cut off; nothing.
     for (step, body) in [&[200][..], &[1, 0], &[11, 2], &[]].into_iter().enumerate() {
-        let header = Header { sequence: header.sequence + step as u16, ..header };
+        let header = Header {
+            sequence: header.sequence + step as u16,
+            ..header
+        };
         let mut frame = FrameBuffer::default();
-        rig.to_axis.extend_from_slice(frame.raw(header, body).unwrap());
+        rig.to_axis
+            .extend_from_slice(frame.raw(header, body).unwrap());
         rig.step();
         let last = rig.heard.last().unwrap();
-        assert_eq!(*last, (header.sequence, Said::Refused(Refusal::NotUnderstood)));
+        assert_eq!(
+            *last,
+            (header.sequence, Said::Refused(Refusal::NotUnderstood))
+        );
     }
     assert_eq!(rig.service.dropped().unknown, 4);
     (0..4).for_each(|_| _ = rig.client.request(&Request::Status {}));

@@ -249,6 +249,12 @@ impl Rig {
     #[track_caller]
     pub fn ready(&mut self) {
         self.hello();
+        self.enabled();
+    }
+
+    /// The same in the session that is open.
+    #[track_caller]
+    pub fn enabled(&mut self) {
         self.do_(&Request::TakeLease {});
         self.renew_every = Some(30);
         self.do_(&Request::Enable {});
