@@ -113,8 +113,8 @@ fn session() -> Vec<u8> {
 #[test]
 fn the_session_of_the_corpus_is_one() {
     assert_eq!(good_frames(&session()).len(), 8);
-    // Enabled, moved; the stop waits for the start of the move.
-    assert_eq!(check(&session()), 2);
+    // Enabled, moved, and off in time to set; the stop waits for the start of the move, and the axis is off before.
+    assert_eq!(check(&session()), 3);
 }
 
 proptest! {
