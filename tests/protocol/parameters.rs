@@ -100,6 +100,9 @@ fn a_parameter_is_set_over_the_line_all_of_it_or_nothing() {
         &set("motion.max_feed_mm_per_min", 1e5),
         Refusal::Inconsistent,
     );
+    let name = "motion.max_feed_mm_per_min";
+    let kept = Said::Parameter(params().motion.max_feed_mm_per_min);
+    assert_eq!(rig.ask(&Request::Parameter { name }), kept);
     assert_eq!(*rig.way.axis.config(), before);
     rig.do_(&set("motion.max_feed_mm_per_min", 3000.0));
     assert!(rig.way.axis.config().limits.velocity() < before.limits.velocity());

@@ -35,6 +35,7 @@ pub enum Said {
         position_nm: i64,
         setpoint_nm: i64,
     },
+    Parameter(f64),
     Other,
 }
 
@@ -55,6 +56,7 @@ impl Said {
                 position_nm,
                 setpoint_nm,
             },
+            Reply::Parameter { value, .. } => Self::Parameter(value),
             _ => Self::Other,
         }
     }
