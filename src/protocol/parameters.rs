@@ -2,7 +2,7 @@
 
 use super::refusal::Refusal;
 use super::reply::Reply;
-use crate::parameter_table::{Field, ParameterTable};
+use crate::parameter_table::ParameterTable;
 use crate::params::{AxisParams, SectionVisitor};
 
 /// Which parameter.
@@ -21,6 +21,8 @@ struct Search<'n> {
     value: Option<f64>,
     /// Parameters seen so far.
     count: u16,
+    /// Place of the one found.
+    index: u16,
     found: Option<Found>,
 }
 
@@ -35,51 +37,66 @@ struct Found {
 }
 
 impl Search<'_> {
-    fn is_it(&self, section: &str, name: &str) -> bool {
-        match self.which {
-            Which::At(index) => index == self.count,
-            Which::Named(asked) => asked.split_once('.') == Some((section, name)),
+    /// Goes over the names of a section; the place of the one that is searched for.
+    // What does not depend on the section's type is in calls: there are many sections.
+    #[inline(never)]
+    fn place(
+        &mut self,
+        section: &str,
+        names: &mut dyn Iterator<Item = &'static str>,
+    ) -> Option<usize> {
+        let mut place = None;
+        for (index, name) in names.enumerate() {
+            let is_it = match self.which {
+                Which::At(at) => at == self.count,
+                Which::Named(asked) => asked.split_once('.') == Some((section, name)),
+            };
+            if is_it {
+                place = Some(index);
+                self.index = self.count;
+            }
+            self.count = self.count.saturating_add(1);
         }
+        place
+    }
+
+    /// Keeps what was found; gives the value to write, if there is one and it may be.
+    #[inline(never)]
+    fn keep(&mut self, found: Found) -> Option<f64> {
+        let [_, min, max, _] = found.figures;
+        self.found = Some(found);
+        self.value.filter(|value| (min..=max).contains(value))
     }
 }
 
 impl SectionVisitor for Search<'_> {
     fn section<T: ParameterTable>(&mut self, section: &'static str, table: &mut T) {
-        for field in T::FIELDS {
-            if self.is_it(section, field.name) {
-                let Field {
-                    name,
-                    unit,
-                    min,
-                    max,
-                    get,
-                    set,
-                    ..
-                } = *field;
-                let figures = [get(table), min, max, get(&T::default())];
-                self.found = Some(Found {
-                    index: self.count,
-                    section,
-                    name,
-                    unit,
-                    figures,
-                });
-                if let Some(value) = self.value
-                    && (min..=max).contains(&value)
-                {
-                    set(table, value);
-                }
+        let names = &mut T::FIELDS.iter().map(|field| field.name);
+        let place = self.place(section, names);
+        if let Some(field) = place.and_then(|place| T::FIELDS.get(place)) {
+            let default = (field.get)(&T::default());
+            let value = self.keep(Found {
+                index: self.index,
+                section,
+                name: field.name,
+                unit: field.unit,
+                figures: [(field.get)(table), field.min, field.max, default],
+            });
+            if let Some(value) = value {
+                (field.set)(table, value);
             }
-            self.count = self.count.saturating_add(1);
         }
     }
 }
 
+// A call: it goes through every section.
+#[inline(never)]
 fn search<'n>(params: &mut AxisParams, which: Which<'n>, value: Option<f64>) -> Search<'n> {
     let mut search = Search {
         which,
         value,
         count: 0,
+        index: 0,
         found: None,
     };
     params.visit_sections(&mut search);
