@@ -1,6 +1,7 @@
 //! Documents that are made from the code: each is what the code says now. `cargo xtask golden` writes them anew.
 
 mod parameters;
+mod wire_format;
 
 use std::path::Path;
 

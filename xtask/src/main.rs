@@ -69,6 +69,8 @@ fn golden_tables() -> Result<()> {
             "docs",
             "--test",
             "supervisor",
+            "--test",
+            "protocol",
         ])
         .env("INSTA_UPDATE", "always")
         .run()?;

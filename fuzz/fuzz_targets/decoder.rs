@@ -1,0 +1,10 @@
+//! Any bytes into a link: `cargo +nightly fuzz run decoder` at the root. What it finds is kept in `corpus/decoder`, and
+//! replayed by `tests/protocol`.
+#![no_main]
+
+#[path = "../../tests/protocol/any_bytes.rs"]
+mod any_bytes;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    any_bytes::check(bytes);
+});

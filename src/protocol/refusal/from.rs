@@ -1,0 +1,71 @@
+//! What the axis and its planner refuse, in the numbers of the link.
+
+use super::Refusal;
+use crate::axis::{ReconfigureError, Refused};
+use crate::homing::HomeRefused;
+use crate::setpoint::plan::PlanError;
+use crate::setpoint::planner::PlannerError;
+use crate::setpoint::sources::{GearError, SelectError};
+use crate::setpoint::trajectory::QueueError;
+use crate::supervisor::ClearError;
+
+impl From<Refused> for Refusal {
+    fn from(refused: Refused) -> Self {
+        match refused {
+            Refused::Queue(error) => error.into(),
+            Refused::Home(HomeRefused::NotReady) => Self::NotReady,
+            Refused::Home(HomeRefused::NoIndex) => Self::NoIndex,
+            Refused::Clear(error) => error.into(),
+            Refused::Gear(GearError::Disabled) => Self::NotEnabled,
+            Refused::Gear(GearError::NotSelected) => Self::OtherSource,
+            Refused::Select(SelectError::Moving) => Self::StillMoving,
+            // Threads, gears and experiments are not asked for over the link yet.
+            Refused::Select(SelectError::Engaged)
+            | Refused::Gear(_)
+            | Refused::Thread(_)
+            | Refused::Experiment(_) => Self::Busy,
+        }
+    }
+}
+
+impl From<QueueError> for Refusal {
+    fn from(error: QueueError) -> Self {
+        match error {
+            QueueError::Late => Self::TooLate,
+            QueueError::Busy => Self::Busy,
+            QueueError::Disabled => Self::NotEnabled,
+            QueueError::Stopping => Self::Stopping,
+            QueueError::BeyondTravel => Self::BeyondTravel,
+            QueueError::OtherSource => Self::OtherSource,
+        }
+    }
+}
+
+impl From<ClearError> for Refusal {
+    fn from(error: ClearError) -> Self {
+        match error {
+            ClearError::EnableRequested => Self::EnableRequested,
+            ClearError::Stopping => Self::Stopping,
+            ClearError::Moving => Self::StillMoving,
+            ClearError::CausePersists(_) => Self::CausePersists,
+        }
+    }
+}
+
+impl From<PlannerError> for Refusal {
+    fn from(error: PlannerError) -> Self {
+        match error {
+            PlannerError::Plan(PlanError::TooFar) => Self::TargetOutOfRange,
+            PlannerError::Plan(PlanError::TooLong) => Self::MoveTooLong,
+            PlannerError::BeyondTravel { .. } => Self::BeyondTravel,
+            PlannerError::Override { .. } => Self::OverrideOutOfRange,
+            PlannerError::TooEarly { .. } => Self::Busy,
+        }
+    }
+}
+
+impl From<ReconfigureError> for Refusal {
+    fn from(_: ReconfigureError) -> Self {
+        Self::StillMoving
+    }
+}

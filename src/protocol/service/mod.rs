@@ -1,0 +1,246 @@
+//! The axis's side of the link: takes requests, asks the axis, answers; and stops it when its lease lapses.
+//!
+//! It runs outside the tick, in any thread that sees the axis's state: [`Service::poll`] at least once a tick or as
+//! often as the thread may, [`Service::receive`] with whatever bytes came. What it asks goes through a [`Port`], what it
+//! answers through a closure that takes bytes.
+
+mod answer;
+mod motion;
+mod port;
+
+pub use port::{Order, Port, Seen};
+
+use super::decoder::{Decoder, Dropped};
+use super::frame::{Channel, Frame, FrameBuffer, Header};
+use super::lease::Lease;
+use super::refusal::Refusal;
+use super::reply::Reply;
+use super::request::Request;
+use super::session::{Arrival, Session};
+use crate::params::{AxisParams, ParamError};
+use crate::telemetry::Record;
+use motion::Mover;
+
+/// What an axis says of itself in its hello.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Version of the firmware.
+    pub firmware: &'static str,
+    /// What it was built from.
+    pub build: &'static str,
+    /// What it runs on.
+    pub board: &'static str,
+    /// Bits of [`reply`](super::reply): what it can do.
+    pub capabilities: u32,
+    /// Room for what is recorded, bytes.
+    pub work_memory: u32,
+    /// Ticks from an order to the start of its plan, 1 or more: as many as planning and the way to the tick take.
+    pub lead_ticks: u32,
+}
+
+/// What came of a request that does something: for when it comes again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Done {
+    Nothing,
+    Outcome(Result<(), Refusal>),
+}
+
+/// The service of a link.
+#[derive(Debug)]
+pub struct Service {
+    decoder: Decoder,
+    inner: Inner,
+}
+
+/// All but the decoder, whose frames are looked at meanwhile.
+#[derive(Debug)]
+struct Inner {
+    identity: Identity,
+    tick_hz: u32,
+    params: AxisParams,
+    session: Session,
+    lease: Lease,
+    mover: Mover,
+    last_done: Done,
+    /// The lease has lapsed, and the axis does not know yet.
+    must_disable: bool,
+    /// A record in so many ticks; 0 for none.
+    every: u16,
+    until_record: u16,
+    next_record: u16,
+    records_lost: u32,
+    buffer: FrameBuffer,
+}
+
+impl Service {
+    /// The service of an axis with `params`, which its configuration was made of.
+    ///
+    /// # Errors
+    /// [`ParamError`] if no configuration can be made of them.
+    pub fn new(identity: Identity, params: &AxisParams) -> Result<Self, ParamError> {
+        let config = params.validate()?;
+        let tick_hz = libm::round(params.tick_hz) as u32;
+        let feed = params.motion.max_feed_mm_per_min;
+        Ok(Self {
+            decoder: Decoder::new(),
+            inner: Inner {
+                identity,
+                tick_hz,
+                params: *params,
+                session: Session::default(),
+                lease: Lease::new(tick_hz),
+                mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
+                last_done: Done::Nothing,
+                must_disable: false,
+                every: 0,
+                until_record: 0,
+                next_record: 0,
+                records_lost: 0,
+                buffer: FrameBuffer::default(),
+            },
+        })
+    }
+
+    /// What was dropped of what came.
+    #[must_use]
+    pub const fn dropped(&self) -> &Dropped {
+        self.decoder.dropped()
+    }
+
+    /// The session that holds the control lease.
+    #[must_use]
+    pub fn holder(&self) -> Option<u32> {
+        self.inner.lease.holder()
+    }
+
+    /// Looks at the axis: a lease that has lapsed disables it, which stops it in its own loop.
+    pub fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
+        self.inner.poll(seen, port);
+    }
+
+    /// Takes bytes that came, any number of them. Each request among them is answered by a frame to `send`.
+    pub fn receive(
+        &mut self,
+        bytes: &[u8],
+        seen: &Seen,
+        port: &mut dyn Port,
+        send: &mut dyn FnMut(&[u8]),
+    ) {
+        let inner = &mut self.inner;
+        inner.poll(seen, port);
+        self.decoder.feed_all(bytes, |frame, dropped| {
+            inner.take(frame, dropped, seen, port);
+            if !inner.buffer.bytes().is_empty() {
+                send(inner.buffer.bytes());
+            }
+        });
+    }
+
+    /// The frame of the record of a tick, if it is one that was subscribed to.
+    pub fn record(&mut self, record: &Record) -> Option<&[u8]> {
+        self.inner.record(record)
+    }
+
+    /// The frame of the last record found no room on its way out.
+    pub const fn note_record_lost(&mut self) {
+        self.inner.records_lost = self.inner.records_lost.saturating_add(1);
+    }
+}
+
+impl Inner {
+    fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
+        self.mover.look(seen, port);
+        self.must_disable |= self.lease.has_lapsed(seen.tick);
+        // Asked again until there is a way on.
+        if self.must_disable && port.order(&Order::Enable(false)).is_ok() {
+            self.must_disable = false;
+        }
+    }
+
+    /// Takes a frame; the answer, if it has one, is left in the buffer.
+    fn take(&mut self, frame: &Frame<'_>, dropped: &mut Dropped, seen: &Seen, port: &mut dyn Port) {
+        self.buffer.clear();
+        let Header {
+            channel, session, ..
+        } = frame.header;
+        if channel != Channel::Request {
+            // Our own words, from a line that is connected to itself.
+            dropped.count_unknown();
+            return;
+        }
+        let request = frame.message::<Request<'_>>();
+        let header = Header {
+            channel: Channel::Reply,
+            ..frame.header
+        };
+        if let Some(Request::Hello { nonce, .. }) = request {
+            let Some(is_new) = self.session.open(nonce, frame.header.sequence, seen.tick) else {
+                dropped.count_late();
+                return self.answer(header, &Self::reply(seen, Err(Refusal::Late)));
+            };
+            if is_new {
+                self.begin_session();
+            }
+            return self.answer(header, &self.hello(seen, nonce));
+        }
+        let outcome = match self.session.arrive(session, frame.header.sequence) {
+            Arrival::NoSession => Err(Refusal::NoSession),
+            Arrival::OtherSession => Err(Refusal::OtherSession),
+            Arrival::Late => {
+                dropped.count_late();
+                Err(Refusal::Late)
+            }
+            Arrival::Repeated => {
+                dropped.count_late();
+                match (self.last_done, request) {
+                    (Done::Outcome(outcome), _) => outcome,
+                    (Done::Nothing, Some(request)) if request.is_query() => {
+                        return self.query(header, &request, dropped, seen);
+                    }
+                    _ => Err(Refusal::Late),
+                }
+            }
+            Arrival::Fresh => match request {
+                Some(request) if request.is_query() => {
+                    self.last_done = Done::Nothing;
+                    return self.query(header, &request, dropped, seen);
+                }
+                Some(request) => self.carry_out(&request, seen, port),
+                None => {
+                    dropped.count_unknown();
+                    self.remember(Err(Refusal::NotUnderstood))
+                }
+            },
+        };
+        self.answer(header, &Self::reply(seen, outcome));
+    }
+
+    fn begin_session(&mut self) {
+        self.last_done = Done::Nothing;
+        self.every = 0;
+        self.next_record = 0;
+    }
+
+    fn record(&mut self, record: &Record) -> Option<&[u8]> {
+        if self.every == 0 {
+            return None;
+        }
+        self.until_record = self.until_record.saturating_sub(1);
+        if self.until_record != 0 {
+            return None;
+        }
+        self.until_record = self.every;
+        let header = Header {
+            channel: Channel::Telemetry,
+            session: self.session.number(),
+            sequence: self.next_record,
+        };
+        self.next_record = self.next_record.wrapping_add(1);
+        self.buffer.raw(header, &record.to_bytes()).ok()
+    }
+
+    fn answer(&mut self, header: Header, reply: &Reply<'_>) {
+        // Every reply fits: a test makes the largest one.
+        let _ = self.buffer.message(header, reply);
+    }
+}
