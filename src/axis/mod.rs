@@ -23,7 +23,7 @@ use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence, Variances};
 use crate::homing::Homing;
 use crate::identification::experiment::Experiment;
-use crate::output::Output;
+use crate::output::{ActiveLimits, Output};
 use crate::params::AxisConfig;
 use crate::setpoint::sources::Sources;
 use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervisor};
@@ -141,7 +141,6 @@ impl<'m> Axis<'m> {
         outputs.retract = self.sources.retract();
         outputs.moving = moving;
         outputs.setpoint = self.compensation.step(self.sources.last());
-        let active = self.output.active_limits();
         let mut demand = self.control(position);
         self.outputs.following_error = demand.following_error;
         if self.has_experiment {
@@ -165,7 +164,7 @@ impl<'m> Axis<'m> {
             setpoint: &outputs.setpoint,
             following_error: outputs.following_error.to_bits(),
             told,
-            active,
+            active: outputs.limits,
             open_loop,
         });
         if self.has_experiment {
@@ -185,9 +184,9 @@ impl<'m> Axis<'m> {
             outputs.enabled = permit > Permit::Off;
         }
         if was_held | self.output.is_held() {
-            outputs.limits = self.output.active_limits();
+            self.tell_limits();
         }
-        if self.supervisor.take_news() {
+        if self.supervisor.has_news() {
             self.tell_status();
         }
         let outputs = &self.outputs;
@@ -200,10 +199,17 @@ impl<'m> Axis<'m> {
         outputs
     }
 
+    #[cold]
+    #[inline(never)]
+    fn tell_limits(&mut self) {
+        self.outputs.limits = self.output.active_limits();
+    }
+
     /// What the supervisor has to say.
     #[cold]
     #[inline(never)]
     fn tell_status(&mut self) {
+        self.supervisor.forget_news();
         let outputs = &mut self.outputs;
         outputs.brake_released = self.supervisor.brake_released();
         outputs.state = self.supervisor.state();
@@ -215,7 +221,11 @@ impl<'m> Axis<'m> {
     /// The control law. A function of its own: so it has the registers to itself.
     #[inline(never)]
     fn control(&mut self, position: Position) -> Demand {
-        let active = self.output.active_limits();
+        let active = if self.output.is_held() {
+            self.output.active_limits()
+        } else {
+            ActiveLimits::default()
+        };
         let estimate = self.estimators.fed_back();
         self.controller
             .step(&self.outputs.setpoint, position, estimate, active)

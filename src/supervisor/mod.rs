@@ -194,8 +194,10 @@ impl Supervisor {
     /// Looks at what the tick came to, and may take back what was permitted.
     #[inline]
     pub fn review(&mut self, review: &Review<'_>) -> Permit {
-        self.has_news |= self.moving != review.moving;
-        self.moving = review.moving;
+        if self.moving != review.moving {
+            self.moving = review.moving;
+            self.has_news = true;
+        }
         self.velocity = review.estimate.velocity.to_bits();
         self.in_loop = review.permit > Permit::ZeroVolts;
         if self.in_loop && self.watch.is_quiet(&self.config, review) && review.trouble.is_none() {

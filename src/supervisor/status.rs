@@ -47,8 +47,13 @@ impl Supervisor {
 
     /// True if state, fault, warnings, refusal or brake may be others since it was asked last.
     #[inline]
-    pub(crate) const fn take_news(&mut self) -> bool {
-        core::mem::replace(&mut self.has_news, false)
+    pub(crate) const fn has_news(&self) -> bool {
+        self.has_news
+    }
+
+    /// It has been asked.
+    pub(crate) const fn forget_news(&mut self) {
+        self.has_news = false;
     }
 
     /// True if the loop was closed in the last tick.

@@ -1,12 +1,12 @@
 //! The whole step with everything switched on, over the moving ticks of the standard move: what the budget of a
 //! tick is about. Observer in the loop, polynomial for display, notch and low-pass, friction and dead time, backlash
-//! and a full screw table, every monitor, and the record of telemetry.
+//! and a full screw table, the feedforward ahead and learned, a push at rest, every monitor, and the record of telemetry.
 //!
 //! `one_stamp` is told the last edge's time alone, as by boards with one capture register; `all_edges` all of them.
 //!
 //! The worst ticks lie where a move starts or ends: the samples of the polynomial's window do not stand one a tick and its
 //! normal equations are made anew, of as many samples as the window has (15 here, 64 at most), while the supervisor
-//! looks at every monitor in full.
+//! looks at every monitor in full. Every fourth tick in motion pays for a step of what is learned as well.
 
 use board_mps2_an386::instructions::Counter;
 use leadscrew::axis::{Axis, Inputs, Outputs};
