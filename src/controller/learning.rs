@@ -15,7 +15,8 @@
 //!
 //! It asks whether command and motion agree, not whether the axis is where it should be: it is no feedback, and takes nothing
 //! from the loop's margins. What is learned is added to the feedforward, and withheld from an observer, which so keeps the
-//! motion of the drive that it knows. Shares stay within −0.6 to 1.5. They are kept until other gains are set.
+//! motion of the drive that it knows. An axis that does not follow to within half of its speed teaches nothing: it is
+//! blocked. Shares stay within −0.6 to 1.5. They are kept until other gains are set.
 
 use super::config::{Gains, SETPOINTS, weight};
 use super::turning::Config as Turning;
@@ -270,10 +271,20 @@ impl State {
     #[cold]
     #[inline(never)]
     pub fn learn(&mut self, config: &Config, setpoint: &Setpoint) -> i32 {
+        if !self.follows(setpoint) {
+            return 0;
+        }
         let before = self.addition.command(setpoint, true);
         self.take(config, setpoint);
         let after = self.addition.command(setpoint, true);
         after.saturating_sub(before)
+    }
+
+    /// The axis moves with the setpoint, to within half of its speed: one that is blocked, or whose encoder is lost, teaches nothing.
+    fn follows(&self, setpoint: &Setpoint) -> bool {
+        let speed = setpoint.velocity.to_bits();
+        let missing = speed.saturating_sub(self.velocity).unsigned_abs();
+        missing <= speed.unsigned_abs().wrapping_shr(1)
     }
 
     fn take(&mut self, config: &Config, setpoint: &Setpoint) {

@@ -163,6 +163,17 @@ fn it_is_kept_over_a_reset_and_forgotten_with_other_gains() {
 }
 
 #[test]
+fn a_blocked_axis_teaches_nothing() {
+    let mut controller = learner();
+    let standing = Estimate::default();
+    for now in motion(30_000.0) {
+        controller.note(0, Some(Command::from_num(0.9)), &standing);
+        controller.step(&now, now.position, &standing, NOT_LIMITED);
+    }
+    assert_eq!(controller.learned(), [0.0; 3]);
+}
+
+#[test]
 fn estimates_that_lag_are_refused() {
     let extras = Extras {
         learning_noise: 1e-3,
