@@ -1,0 +1,263 @@
+//! Contents in chunks: written aside, read back, then switched to by one record.
+//!
+//! A content has two slots. Its record tells which of them holds it, and its length and checksum; a new content goes
+//! to the other slot. So the old one is whole until the record is written, and the new one from then on.
+
+use embassy_futures::block_on;
+use embedded_storage::nor_flash::NorFlash;
+
+use super::{CHUNK, CRC, Error, Kind, Permission, Saved, Store};
+
+/// Most chunks: their number is a byte.
+const MOST_CHUNKS: usize = 256;
+/// Most bytes of a content.
+pub(super) const MOST_BYTES: usize = MOST_CHUNKS * CHUNK;
+const RECORD: usize = 16;
+
+/// What is known of a content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Which it is.
+    pub kind: Kind,
+    /// Version of its format.
+    pub version: u16,
+    /// How often it was saved or erased, this time included.
+    pub generation: u32,
+    /// Bytes.
+    pub len: usize,
+    /// CRC-32 (ISO-HDLC, as of zip) of its bytes.
+    pub crc: u32,
+    pub(super) slot: u8,
+}
+
+impl Entry {
+    fn to_record(self) -> [u8; RECORD] {
+        let mut record = [0; RECORD];
+        record[..2].copy_from_slice(&self.version.to_le_bytes());
+        record[2] = self.slot;
+        record[4..8].copy_from_slice(&self.generation.to_le_bytes());
+        record[8..12].copy_from_slice(&(self.len as u32).to_le_bytes());
+        record[12..].copy_from_slice(&self.crc.to_le_bytes());
+        record
+    }
+
+    fn of_record(kind: Kind, record: [u8; RECORD]) -> Self {
+        let word = |at: usize| {
+            let mut word = [0; 4];
+            word.copy_from_slice(&record[at..at + 4]);
+            u32::from_le_bytes(word)
+        };
+        Self {
+            kind,
+            version: u16::from_le_bytes([record[0], record[1]]),
+            slot: record[2] & 1,
+            generation: word(4),
+            len: word(8) as usize,
+            crc: word(12),
+        }
+    }
+
+    const fn chunks(&self) -> usize {
+        self.len.div_ceil(CHUNK)
+    }
+}
+
+/// Key of a content's record.
+const fn record_key(kind: Kind) -> u16 {
+    kind.number() << 12
+}
+
+/// Key of a chunk.
+const fn chunk_key(kind: Kind, slot: u8, chunk: usize) -> u16 {
+    kind.number() << 12 | 1 << 11 | (slot as u16) << 10 | chunk as u16
+}
+
+/// Writes the bytes of a content from an offset on.
+pub(super) type Fill<'f> = dyn FnMut(usize, &mut [u8]) + 'f;
+
+impl<F: NorFlash> Store<F> {
+    /// The record of a content, erased ones (of length 0) included.
+    pub(super) fn record(&mut self, kind: Kind) -> Result<Option<Entry>, Error<F::Error>> {
+        let fetched = block_on(
+            self.map
+                .fetch_item::<[u8; RECORD]>(&mut self.buffer, &record_key(kind)),
+        )?;
+        Ok(fetched.map(|record| Entry::of_record(kind, record)))
+    }
+
+    /// Saves `len` bytes, unless they are there already.
+    pub(super) fn write(
+        &mut self,
+        kind: Kind,
+        len: usize,
+        fill: &mut Fill<'_>,
+        permission: &Permission<'_>,
+    ) -> Result<Saved, Error<F::Error>> {
+        if len > MOST_BYTES {
+            return Err(Error::TooLarge {
+                kind,
+                len,
+                most: MOST_BYTES,
+            });
+        }
+        let before = self.record(kind)?;
+        let is_newer = |entry: &Entry| entry.len > 0 && entry.version > kind.version();
+        if let Some(Entry { version, .. }) = before.filter(is_newer) {
+            return Err(Error::Newer { kind, version });
+        }
+        let after = Entry {
+            kind,
+            version: kind.version(),
+            generation: before.map_or(1, |entry| entry.generation.wrapping_add(1)),
+            len,
+            crc: checksum(len, fill),
+            slot: before.map_or(0, |entry| 1 - entry.slot),
+        };
+        if let Some(before) = before {
+            let is_same =
+                (before.version, before.len, before.crc) == (after.version, after.len, after.crc);
+            if is_same && self.check(&before).is_ok() {
+                return Ok(Saved::Unchanged);
+            }
+        }
+        self.unlocked(permission, |store| {
+            store.write_chunks(&after, fill)?;
+            store.check(&after)?;
+            store.switch(&after)
+        })?;
+        Ok(Saved::Written)
+    }
+
+    fn write_chunks(&mut self, entry: &Entry, fill: &mut Fill<'_>) -> Result<(), Error<F::Error>> {
+        let mut chunk = [0; CHUNK];
+        for number in 0..entry.chunks() {
+            let at = number * CHUNK;
+            let bytes = &mut chunk[..CHUNK.min(entry.len - at)];
+            fill(at, bytes);
+            self.put(chunk_key(entry.kind, entry.slot, number), bytes)?;
+        }
+        Ok(())
+    }
+
+    fn switch(&mut self, entry: &Entry) -> Result<(), Error<F::Error>> {
+        self.put(record_key(entry.kind), &entry.to_record())
+    }
+
+    fn put(&mut self, key: u16, bytes: &[u8]) -> Result<(), Error<F::Error>> {
+        Ok(block_on(self.map.store_item(
+            &mut self.buffer,
+            &key,
+            &bytes,
+        ))?)
+    }
+
+    /// Reads every chunk, and hands it to `take` with its offset; gives the checksum.
+    fn read_chunks(
+        &mut self,
+        entry: &Entry,
+        mut take: impl FnMut(usize, &[u8]),
+    ) -> Result<(), Error<F::Error>> {
+        let damaged = Error::Damaged { kind: entry.kind };
+        let mut digest = CRC.digest();
+        for number in 0..entry.chunks() {
+            let at = number * CHUNK;
+            let key = chunk_key(entry.kind, entry.slot, number);
+            let fetched = block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &key))?;
+            let bytes = fetched.unwrap_or_default();
+            if bytes.len() != CHUNK.min(entry.len - at) {
+                return Err(damaged);
+            }
+            digest.update(bytes);
+            take(at, bytes);
+        }
+        if digest.finalize() == entry.crc {
+            Ok(())
+        } else {
+            Err(damaged)
+        }
+    }
+
+    fn check(&mut self, entry: &Entry) -> Result<(), Error<F::Error>> {
+        self.read_chunks(entry, |_, _| {})
+    }
+
+    /// The bytes of a content, into `memory`; none if there is no such content.
+    ///
+    /// # Errors
+    /// Damage, a newer format, too little memory, or the flash failed. Then `memory` holds nothing of use.
+    pub fn read<'m>(
+        &mut self,
+        kind: Kind,
+        memory: &'m mut [u8],
+    ) -> Result<Option<&'m [u8]>, Error<F::Error>> {
+        let Some(entry) = self.entry(kind)? else {
+            return Ok(None);
+        };
+        let (version, needed, given) = (entry.version, entry.len, memory.len());
+        if version > kind.version() {
+            return Err(Error::Newer { kind, version });
+        }
+        let Some(memory) = memory.get_mut(..needed) else {
+            return Err(Error::Memory {
+                kind,
+                given,
+                needed,
+            });
+        };
+        self.read_chunks(&entry, |at, bytes| {
+            memory[at..at + bytes.len()].copy_from_slice(bytes);
+        })?;
+        Ok(Some(memory))
+    }
+
+    /// Takes a content out; what is read of it from then on is none.
+    ///
+    /// # Errors
+    /// The flash failed.
+    pub fn erase(
+        &mut self,
+        kind: Kind,
+        permission: &Permission<'_>,
+    ) -> Result<(), Error<F::Error>> {
+        let Some(before) = self.record(kind)?.filter(|entry| entry.len > 0) else {
+            return Ok(());
+        };
+        let after = Entry {
+            generation: before.generation.wrapping_add(1),
+            len: 0,
+            crc: checksum(0, &mut |_, _| {}),
+            ..before
+        };
+        self.unlocked(permission, |store| {
+            store.switch(&after)?;
+            // The chunks give their room back.
+            store.empty(kind, 0)?;
+            store.empty(kind, 1)?;
+            Ok(())
+        })
+    }
+
+    fn empty(&mut self, kind: Kind, slot: u8) -> Result<(), Error<F::Error>> {
+        for chunk in 0..MOST_CHUNKS {
+            let key = chunk_key(kind, slot, chunk);
+            match block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &key))? {
+                // They are numbered without gaps.
+                None => break,
+                Some([]) => {}
+                Some(_) => self.put(key, &[])?,
+            }
+        }
+        Ok(())
+    }
+}
+
+fn checksum(len: usize, fill: &mut Fill<'_>) -> u32 {
+    let mut digest = CRC.digest();
+    let mut chunk = [0; CHUNK];
+    for at in (0..len).step_by(CHUNK) {
+        let bytes = &mut chunk[..CHUNK.min(len - at)];
+        fill(at, bytes);
+        digest.update(bytes);
+    }
+    digest.finalize()
+}
