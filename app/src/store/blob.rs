@@ -6,13 +6,13 @@
 use embassy_futures::block_on;
 use embedded_storage::nor_flash::NorFlash;
 
-use super::{CHUNK, CRC, Error, Kind, Permission, Saved, Store};
+use super::{CHUNK, CRC, Error, Kind, Map, Permission, Saved, Store};
 
 /// Most chunks: their number is a byte.
-const MOST_CHUNKS: usize = 256;
+const MOST_CHUNKS: usize = 255;
 /// Most bytes of a content.
 pub(super) const MOST_BYTES: usize = MOST_CHUNKS * CHUNK;
-const RECORD: usize = 16;
+const RECORD: usize = 18;
 
 /// What is known of a content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +25,11 @@ pub struct Entry {
     pub generation: u32,
     /// Bytes.
     pub len: usize,
-    /// CRC-32 (ISO-HDLC, as of zip) of its bytes.
+    /// CRC-32C (Castagnoli, as of iSCSI) of its bytes.
     pub crc: u32,
     pub(super) slot: u8,
+    /// Chunks that there are, or may be, in each slot.
+    pub(super) chunks: [u8; 2],
 }
 
 impl Entry {
@@ -37,7 +39,8 @@ impl Entry {
         record[2] = self.slot;
         record[4..8].copy_from_slice(&self.generation.to_le_bytes());
         record[8..12].copy_from_slice(&(self.len as u32).to_le_bytes());
-        record[12..].copy_from_slice(&self.crc.to_le_bytes());
+        record[12..16].copy_from_slice(&self.crc.to_le_bytes());
+        record[16..].copy_from_slice(&self.chunks);
         record
     }
 
@@ -54,11 +57,19 @@ impl Entry {
             generation: word(4),
             len: word(8) as usize,
             crc: word(12),
+            chunks: [record[16], record[17]],
         }
     }
 
-    const fn chunks(&self) -> usize {
+    /// Chunks of its bytes.
+    const fn used(&self) -> usize {
         self.len.div_ceil(CHUNK)
+    }
+
+    /// It needs no more chunks in its slot than there are.
+    fn fits(&self, before: Option<Self>) -> bool {
+        let slot = usize::from(self.slot);
+        before.is_some_and(|before| before.chunks[slot] >= self.chunks[slot])
     }
 }
 
@@ -105,22 +116,39 @@ impl<F: NorFlash> Store<F> {
         if let Some(Entry { version, .. }) = before.filter(is_newer) {
             return Err(Error::Newer { kind, version });
         }
-        let after = Entry {
+        let mut after = Entry {
             kind,
             version: kind.version(),
             generation: before.map_or(1, |entry| entry.generation.wrapping_add(1)),
             len,
             crc: checksum(len, fill),
             slot: before.map_or(0, |entry| 1 - entry.slot),
+            chunks: before.map_or([0; 2], |entry| entry.chunks),
         };
-        if let Some(before) = before {
-            let is_same =
-                (before.version, before.len, before.crc) == (after.version, after.len, after.crc);
-            if is_same && self.check(&before).is_ok() {
-                return Ok(Saved::Unchanged);
-            }
+        let used = after.used() as u8;
+        let chunks = &mut after.chunks[usize::from(after.slot)];
+        *chunks = used.max(*chunks);
+        if let Some(before) = before
+            && (before.version, before.len, before.crc) == (after.version, after.len, after.crc)
+            && self.is_there(&before, fill)?
+        {
+            return Ok(Saved::Unchanged);
+        }
+        if !after.fits(before) && !self.has_room(&after)? {
+            return Err(Error::Full);
         }
         self.unlocked(permission, |store| {
+            if !after.fits(before) {
+                // What is going to take room is told before, lest a cut leaves room taken that nobody knows of.
+                let none = Entry {
+                    len: 0,
+                    generation: 0,
+                    ..after
+                };
+                let chunks = after.chunks;
+                let told = before.map_or(none, |before| Entry { chunks, ..before });
+                store.switch(&told)?;
+            }
             store.write_chunks(&after, fill)?;
             store.check(&after)?;
             store.switch(&after)
@@ -128,9 +156,41 @@ impl<F: NorFlash> Store<F> {
         Ok(Saved::Written)
     }
 
+    /// Whether there is room for all contents with `entry` among them. A sector may stay free of less than a chunk, and
+    /// one is kept blank.
+    fn has_room(&mut self, entry: &Entry) -> Result<bool, Error<F::Error>> {
+        let item = Self::item(CHUNK);
+        let mut taken = 0;
+        for kind in Kind::ALL {
+            let other = self.record(kind)?.filter(|other| other.kind != entry.kind);
+            let known = if kind == entry.kind {
+                Some(*entry)
+            } else {
+                other
+            };
+            let chunks = known.map_or([0; 2], |entry| entry.chunks);
+            taken += chunks
+                .map(|chunks| usize::from(chunks) * item)
+                .iter()
+                .sum::<usize>();
+            taken += Self::item(RECORD);
+        }
+        let range = self.map.flash_range();
+        let sectors = (range.end - range.start) as usize / F::ERASE_SIZE;
+        let marks = 2 * F::WRITE_SIZE.max(F::READ_SIZE);
+        let room = F::ERASE_SIZE.saturating_sub(marks + item);
+        Ok(taken <= (sectors - 1) * room)
+    }
+
+    /// Bytes that an item of `len` bytes takes.
+    fn item(len: usize) -> usize {
+        let word = F::WRITE_SIZE.max(F::READ_SIZE);
+        Map::<F>::item_overhead_size() as usize + (size_of::<u16>() + len).next_multiple_of(word)
+    }
+
     fn write_chunks(&mut self, entry: &Entry, fill: &mut Fill<'_>) -> Result<(), Error<F::Error>> {
         let mut chunk = [0; CHUNK];
-        for number in 0..entry.chunks() {
+        for number in 0..entry.used() {
             let at = number * CHUNK;
             let bytes = &mut chunk[..CHUNK.min(entry.len - at)];
             fill(at, bytes);
@@ -151,7 +211,7 @@ impl<F: NorFlash> Store<F> {
         ))?)
     }
 
-    /// Reads every chunk, and hands it to `take` with its offset; gives the checksum.
+    /// Reads every chunk, and hands it to `take` with its offset; at the end the checksum tells.
     fn read_chunks(
         &mut self,
         entry: &Entry,
@@ -159,7 +219,7 @@ impl<F: NorFlash> Store<F> {
     ) -> Result<(), Error<F::Error>> {
         let damaged = Error::Damaged { kind: entry.kind };
         let mut digest = CRC.digest();
-        for number in 0..entry.chunks() {
+        for number in 0..entry.used() {
             let at = number * CHUNK;
             let key = chunk_key(entry.kind, entry.slot, number);
             let fetched = block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &key))?;
@@ -174,6 +234,21 @@ impl<F: NorFlash> Store<F> {
             Ok(())
         } else {
             Err(damaged)
+        }
+    }
+
+    /// Whether the content is that of `fill`, byte for byte; not if it is damaged.
+    fn is_there(&mut self, entry: &Entry, fill: &mut Fill<'_>) -> Result<bool, Error<F::Error>> {
+        let mut is_same = true;
+        let mut chunk = [0; CHUNK];
+        let read = self.read_chunks(entry, |at, bytes| {
+            let chunk = &mut chunk[..bytes.len()];
+            fill(at, chunk);
+            is_same &= chunk == bytes;
+        });
+        match read {
+            Err(Error::Damaged { .. }) => Ok(false),
+            read => read.map(|()| is_same),
         }
     }
 
@@ -219,9 +294,12 @@ impl<F: NorFlash> Store<F> {
         kind: Kind,
         permission: &Permission<'_>,
     ) -> Result<(), Error<F::Error>> {
-        let Some(before) = self.record(kind)?.filter(|entry| entry.len > 0) else {
+        let Some(before) = self.record(kind)? else {
             return Ok(());
         };
+        if before.len == 0 && before.chunks == [0; 2] {
+            return Ok(());
+        }
         let after = Entry {
             generation: before.generation.wrapping_add(1),
             len: 0,
@@ -233,7 +311,10 @@ impl<F: NorFlash> Store<F> {
             // The chunks give their room back.
             store.empty(kind, 0)?;
             store.empty(kind, 1)?;
-            Ok(())
+            store.switch(&Entry {
+                chunks: [0; 2],
+                ..after
+            })
         })
     }
 

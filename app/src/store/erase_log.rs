@@ -5,7 +5,7 @@
 //! that is not struck off erases again: the content was given up already, and nothing new is written before the strike.
 //!
 //! The log has two sectors, used in turns. An entry has [`ENTRY`] bytes, or a word if that is longer: sequence number,
-//! address of the sector ([`STRUCK`]: none), CRC-32 of both, all u32, little endian; the rest is 0xFF. The entry with
+//! address of the sector ([`STRUCK`]: none), CRC-32C of both, all u32, little endian; the rest is 0xFF. The entry with
 //! the highest number counts. A sector of the log is erased as it is taken up, when all its entries are outdated by the
 //! last one of the other; thus the log needs no log.
 

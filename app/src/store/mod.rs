@@ -27,7 +27,7 @@ mod settings;
 use core::fmt;
 use core::ops::Range;
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use crc::{CRC_32_ISCSI, Crc, NoTable};
 use embassy_futures::block_on;
 use embedded_storage::nor_flash::NorFlash;
 use leadscrew::encoder_map::EncoderMap;
@@ -45,8 +45,9 @@ pub use settings::{SET_BYTES, Settings};
 
 use guard::Guard;
 
-/// Runs outside the tick over some kilobytes: a table would cost more flash than it is worth.
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+/// Runs outside the tick over some kilobytes: a table would cost more flash than it is worth. Not the polynomial that
+/// encoder maps end with: with that one all of them would have the same checksum.
+const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISCSI);
 /// Bytes of a chunk of a content.
 const CHUNK: usize = 512;
 /// A chunk, its key, and up to the longest word.

@@ -153,11 +153,12 @@ fn a_newer_format_is_neither_taken_nor_overwritten() {
         .unwrap();
     let entry = store.entry(Kind::Parameters).unwrap().unwrap();
     // The record as docs/store.md has it, with version 2.
-    let mut record = [0; 16];
+    let mut record = [0; 18];
     record[0] = 2;
     record[4] = 2;
     record[8..12].copy_from_slice(&(entry.len as u32).to_le_bytes());
-    record[12..].copy_from_slice(&entry.crc.to_le_bytes());
+    record[12..16].copy_from_slice(&entry.crc.to_le_bytes());
+    record[16] = 10;
     let range = 2 * 4096..8 * 4096;
     let mut map = MapStorage::<u16, _, _>::new(
         Asynchronous(&mut flash),
