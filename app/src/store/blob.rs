@@ -6,82 +6,8 @@
 use embassy_futures::block_on;
 use embedded_storage::nor_flash::NorFlash;
 
+use super::record::{Entry, MOST_BYTES, MOST_CHUNKS, RECORD, chunk_key, record_key};
 use super::{CHUNK, CRC, Error, Kind, Map, Permission, Saved, Store};
-
-/// Most chunks: their number is a byte.
-const MOST_CHUNKS: usize = 255;
-/// Most bytes of a content.
-pub(super) const MOST_BYTES: usize = MOST_CHUNKS * CHUNK;
-const RECORD: usize = 18;
-
-/// What is known of a content.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// Which it is.
-    pub kind: Kind,
-    /// Version of its format.
-    pub version: u16,
-    /// How often it was saved or erased, this time included.
-    pub generation: u32,
-    /// Bytes.
-    pub len: usize,
-    /// CRC-32C (Castagnoli, as of iSCSI) of its bytes.
-    pub crc: u32,
-    pub(super) slot: u8,
-    /// Chunks that there are, or may be, in each slot.
-    pub(super) chunks: [u8; 2],
-}
-
-impl Entry {
-    fn to_record(self) -> [u8; RECORD] {
-        let mut record = [0; RECORD];
-        record[..2].copy_from_slice(&self.version.to_le_bytes());
-        record[2] = self.slot;
-        record[4..8].copy_from_slice(&self.generation.to_le_bytes());
-        record[8..12].copy_from_slice(&(self.len as u32).to_le_bytes());
-        record[12..16].copy_from_slice(&self.crc.to_le_bytes());
-        record[16..].copy_from_slice(&self.chunks);
-        record
-    }
-
-    fn of_record(kind: Kind, record: [u8; RECORD]) -> Self {
-        let word = |at: usize| {
-            let mut word = [0; 4];
-            word.copy_from_slice(&record[at..at + 4]);
-            u32::from_le_bytes(word)
-        };
-        Self {
-            kind,
-            version: u16::from_le_bytes([record[0], record[1]]),
-            slot: record[2] & 1,
-            generation: word(4),
-            len: word(8) as usize,
-            crc: word(12),
-            chunks: [record[16], record[17]],
-        }
-    }
-
-    /// Chunks of its bytes.
-    const fn used(&self) -> usize {
-        self.len.div_ceil(CHUNK)
-    }
-
-    /// It needs no more chunks in its slot than there are.
-    fn fits(&self, before: Option<Self>) -> bool {
-        let slot = usize::from(self.slot);
-        before.is_some_and(|before| before.chunks[slot] >= self.chunks[slot])
-    }
-}
-
-/// Key of a content's record.
-const fn record_key(kind: Kind) -> u16 {
-    kind.number() << 12
-}
-
-/// Key of a chunk.
-const fn chunk_key(kind: Kind, slot: u8, chunk: usize) -> u16 {
-    kind.number() << 12 | 1 << 11 | (slot as u16) << 10 | chunk as u16
-}
 
 /// Writes the bytes of a content from an offset on.
 pub(super) type Fill<'f> = dyn FnMut(usize, &mut [u8]) + 'f;

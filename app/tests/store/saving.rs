@@ -56,7 +56,8 @@ fn all_of_it_outlives_the_power() {
     assert_eq!(saved, [Ok(Saved::Unchanged); 3]);
     assert_eq!(flash.operations, 0);
     let mut store = mounted(&mut flash);
-    println!("{:?}", Kind::ALL.map(|kind| store.entry(kind)));
+    let lens = Kind::ALL.map(|kind| store.entry(kind).unwrap().map(|entry| entry.len));
+    println!("bytes: {lens:?}");
 
     let kinds = |store: &mut Store<_>, all| {
         let entries = store.entries(all);
@@ -121,6 +122,33 @@ fn erasures_are_spread_over_the_sectors() {
     let (least, most) = (content.iter().min(), content.iter().max());
     assert!(most.unwrap() - least.unwrap() <= 1, "{content:?}");
     assert!(log.iter().max() <= least, "{log:?}");
+}
+
+/// Sectors that hold everything at its largest in both slots, and not one too many.
+fn needs<const SECTOR: usize, const WORD: usize>(sectors: usize) {
+    let permission = permission();
+    for (sectors, is_enough) in [(sectors, true), (sectors - 1, false)] {
+        let mut flash = SimFlash::<SECTOR, WORD>::new(sectors);
+        let mut store = mounted(&mut flash);
+        let mut saved = |edition| {
+            let map = map_image(edition, 10_000);
+            let screw = screw_points(edition, 256);
+            let work = &mut [0; SET_BYTES];
+            store.save_params(&settings(edition), work, &permission)?;
+            store.save_map(&map, &permission)?;
+            store.save_screw(&screw, &permission)
+        };
+        let saved = [1, 2, 3].map(&mut saved);
+        let fits = saved == [Ok(Saved::Written); 3];
+        assert_eq!(fits, is_enough, "{sectors} of {SECTOR}: {saved:?}");
+    }
+}
+
+#[test]
+fn the_sizes_stated_suffice() {
+    needs::<2048, 8>(31);
+    needs::<4096, 4>(15);
+    needs::<16384, 4>(6);
 }
 
 #[test]
