@@ -42,18 +42,7 @@ impl<F: NorFlash> Store<F> {
         if let Some(Entry { version, .. }) = before.filter(is_newer) {
             return Err(Error::Newer { kind, version });
         }
-        let mut after = Entry {
-            kind,
-            version: kind.version(),
-            generation: before.map_or(1, |entry| entry.generation.wrapping_add(1)),
-            len,
-            crc: checksum(len, fill),
-            slot: before.map_or(0, |entry| 1 - entry.slot),
-            chunks: before.map_or([0; 2], |entry| entry.chunks),
-        };
-        let used = after.used() as u8;
-        let chunks = &mut after.chunks[usize::from(after.slot)];
-        *chunks = used.max(*chunks);
+        let after = Entry::after(before, kind, len, checksum(len, fill));
         if let Some(before) = before
             && (before.version, before.len, before.crc) == (after.version, after.len, after.crc)
             && self.is_there(&before, fill)?
@@ -65,21 +54,24 @@ impl<F: NorFlash> Store<F> {
         }
         self.unlocked(permission, |store| {
             if !after.fits(before) {
-                // What is going to take room is told before, lest a cut leaves room taken that nobody knows of.
-                let none = Entry {
-                    len: 0,
-                    generation: 0,
-                    ..after
-                };
-                let chunks = after.chunks;
-                let told = before.map_or(none, |before| Entry { chunks, ..before });
-                store.switch(&told)?;
+                store.reserve(before, &after)?;
             }
             store.write_chunks(&after, fill)?;
             store.check(&after)?;
             store.switch(&after)
         })?;
         Ok(Saved::Written)
+    }
+
+    /// Tells what is going to take room, lest a cut leaves room taken that nobody knows of.
+    fn reserve(&mut self, before: Option<Entry>, after: &Entry) -> Result<(), Error<F::Error>> {
+        let none = Entry {
+            len: 0,
+            generation: 0,
+            ..*after
+        };
+        let chunks = after.chunks;
+        self.switch(&before.map_or(none, |before| Entry { chunks, ..before }))
     }
 
     /// Whether there is room for all contents with `entry` among them. A sector may stay free of less than a chunk, and

@@ -28,6 +28,23 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// What a save of `len` bytes makes of the record `before`: it goes to the other slot.
+    pub(super) fn after(before: Option<Self>, kind: Kind, len: usize, crc: u32) -> Self {
+        let mut after = Self {
+            kind,
+            version: kind.version(),
+            generation: before.map_or(1, |entry| entry.generation.wrapping_add(1)),
+            len,
+            crc,
+            slot: before.map_or(0, |entry| 1 - entry.slot),
+            chunks: before.map_or([0; 2], |entry| entry.chunks),
+        };
+        let used = after.used() as u8;
+        let chunks = &mut after.chunks[usize::from(after.slot)];
+        *chunks = used.max(*chunks);
+        after
+    }
+
     pub(super) fn to_record(self) -> [u8; RECORD] {
         let mut record = [0; RECORD];
         record[..2].copy_from_slice(&self.version.to_le_bytes());
