@@ -16,5 +16,6 @@
 
 pub mod axis_control;
 pub mod options;
+pub mod store;
 pub mod telemetry;
 pub mod tick;
