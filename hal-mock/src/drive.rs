@@ -230,11 +230,17 @@ impl Drive {
             return false;
         };
         let wanted = wanted as f32;
+        let is_held = wanted.abs() <= friction.held;
         if velocity == 0.0 {
-            return wanted.abs() <= friction.held;
+            return is_held;
         }
-        let onward = if velocity > 0.0 { wanted } else { -wanted };
-        (velocity + acceleration) * velocity <= 0.0 && onward >= -friction.held
+        // Signs first: on the target they cost a fraction of an f64 product.
+        let backward = velocity.is_sign_negative();
+        if backward == acceleration.is_sign_negative() {
+            return false;
+        }
+        let pulls_on = wanted.is_sign_negative() == backward;
+        (is_held || pulls_on) && (velocity + acceleration) * velocity <= 0.0
     }
 
     /// The motion of a tick in which something stronger than the drive has the shaft.

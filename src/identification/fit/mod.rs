@@ -4,7 +4,7 @@
 //! begins is free (the mean of its errors is taken out), so that what an encoder adds to a whole motion does not count. Gauss–Newton with Levenberg's damping;
 //! derivatives come from drives that run beside the first one, each with one parameter moved.
 //!
-//! How sure the result is, [`covariance`] says.
+//! How sure the result is, `covariance` says.
 
 mod bounds;
 mod covariance;
