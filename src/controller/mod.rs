@@ -34,6 +34,7 @@ pub mod learning;
 pub mod params;
 pub mod rest;
 pub mod turning;
+mod weights;
 
 pub use config::Config;
 

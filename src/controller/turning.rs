@@ -8,7 +8,8 @@
 //!
 //! Without it each change of the jerk costs Δj·τ/ω² d of the command's integral, which feedback has to take out.
 
-use super::config::{Gains, weight};
+use super::config::Gains;
+use super::weights::weight;
 use crate::estimator::saturate;
 use crate::setpoint::Setpoint;
 use crate::units::Jerk;
