@@ -38,6 +38,7 @@ const TERM_FRAC: u32 = 28;
 const TERM_SHIFT: u32 = Command::FRAC_NBITS - TERM_FRAC;
 /// Time constant of the low-pass, ticks: 2ⁿ; also the ticks from one time to the next.
 const SMOOTHING: u32 = 2;
+
 /// State of the learning.
 #[derive(Clone, Debug)]
 pub struct State {
@@ -89,13 +90,6 @@ impl State {
         self.shares
             .values()
             .map(|share| libm::ldexp(f64::from(share), SHARE_FRAC.cast_signed().wrapping_neg()))
-    }
-
-    /// What has been added to the last demand, Q.30.
-    #[inline]
-    #[must_use]
-    pub const fn added(&self) -> i32 {
-        self.added
     }
 
     /// A level of friction as the drive's gain has turned out: (1 + α_v)·level.
