@@ -17,7 +17,7 @@
 //! [`uncertainty`], [`setpoint`] says where to be, [`compensation`] what the screw makes of it, [`controller`] what to
 //! do about it, [`output`] limits it, [`supervisor`] says whether any of it may be, [`telemetry`] tells of it. [`axis`]
 //! puts them together into one pure step; [`params`] makes its configuration from physical units, by the conversions
-//! in [`units`].
+//! in [`units`]; [`settings`] names every value of them.
 //!
 //! Beside the path, [`homing`] finds where the axis counts from, [`identification`] what its drive does, and
 //! [`tachogenerator`] checks the encoder by a second sensor. Outside the tick, [`setpoint::planner`] plans moves,
@@ -63,6 +63,7 @@ pub mod params;
 pub mod protocol;
 pub mod quadrature;
 pub mod setpoint;
+pub mod settings;
 pub mod supervisor;
 pub mod tachogenerator;
 pub mod telemetry;

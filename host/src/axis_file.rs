@@ -5,10 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::observer::{self, ObserverParams};
+use leadscrew::estimator::observer;
 use leadscrew::estimator::paths::PositionFeedback;
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{AxisParams, SectionVisitor};
+use leadscrew::settings::Settings;
 use leadscrew::units::{AxisScale, TICK_HZ, TIMER_HZ};
 use leadscrew_hal_mock::scenario::{Visitor, visit_axis};
 use toml::Spanned;
@@ -27,24 +28,15 @@ const POSITIONS: [(&str, PositionFeedback); 2] = [
 /// The estimator of a file that names none.
 const DEFAULT_ESTIMATOR: &str = "exponential";
 
-/// Parameters of an axis, and those that its estimator was made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisFile {
-    /// The axis; an observer among its estimators is made of `observer`.
-    pub axis: AxisParams,
-    /// What an observer counts on.
-    pub observer: ObserverParams,
-}
-
 /// Reads a file.
 ///
 /// # Errors
 /// [`TomlFileError`] with file, line and what was expected.
-pub fn read(path: &Path) -> Result<AxisFile, TomlFileError> {
+pub fn read(path: &Path) -> Result<Settings, TomlFileError> {
     toml_file::read(path, parse)
 }
 
-fn parse(text: &str) -> Result<AxisFile, Complaint> {
+fn parse(text: &str) -> Result<Settings, Complaint> {
     let document = toml_file::document(text)?;
     let document = document.get_ref();
     let (name, at) = name_at(document, KEYS[2], DEFAULT_ESTIMATOR, EstimatorConfig::NAMES)?;
@@ -56,10 +48,7 @@ fn parse(text: &str) -> Result<AxisFile, Complaint> {
             return Err(Complaint::new(at, message));
         }
     };
-    let mut file = AxisFile {
-        axis: AxisParams::new(estimator),
-        observer: ObserverParams::default(),
-    };
+    let mut file = Settings::new(estimator);
     for (key, (low, high), place) in [
         (KEYS[0], TICK_HZ, &mut file.axis.tick_hz),
         (KEYS[1], TIMER_HZ, &mut file.axis.timer_hz),
@@ -95,7 +84,7 @@ fn parse(text: &str) -> Result<AxisFile, Complaint> {
 /// Section of the observer's parameters.
 const OBSERVER: &str = "observer";
 
-fn observer_of(file: &AxisFile) -> Result<EstimatorConfig, leadscrew::units::RangeError> {
+fn observer_of(file: &Settings) -> Result<EstimatorConfig, leadscrew::units::RangeError> {
     let scale = AxisScale::new(file.axis.motion.counts_per_mm, file.axis.tick_hz)?;
     observer::Config::new(&file.observer, scale).map(EstimatorConfig::Observer)
 }
@@ -143,7 +132,7 @@ fn sections(axis: &mut AxisParams) -> Vec<&'static str> {
 
 /// The file as TOML, every key with its unit, range and meaning.
 #[must_use]
-pub fn dump(file: &AxisFile) -> String {
+pub fn dump(file: &Settings) -> String {
     struct Dump(String);
     impl SectionVisitor for Dump {
         fn section<T: ParameterTable>(&mut self, name: &'static str, table: &mut T) {
@@ -198,10 +187,7 @@ mod tests {
     fn a_dumped_axis_reads_back_the_same() {
         for name in EstimatorConfig::NAMES {
             let estimator = EstimatorConfig::by_name(name).ok().flatten();
-            let mut file = AxisFile {
-                axis: AxisParams::new(estimator.expect("a name of the list")),
-                observer: ObserverParams::default(),
-            };
+            let mut file = Settings::new(estimator.expect("a name of the list"));
             file.axis.motion.max_feed_mm_per_min = 8000.0;
             file.axis.controller.position_gain_per_s = 12.5;
             if matches!(file.axis.estimator, EstimatorConfig::Observer(_)) {

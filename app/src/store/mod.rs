@@ -18,7 +18,6 @@ mod erase_log;
 mod error;
 mod guard;
 mod interlock;
-mod keys;
 mod record;
 mod report;
 mod screw;
@@ -38,11 +37,10 @@ use sequential_storage::map::{MapConfig, MapStorage};
 pub use error::Error;
 pub use guard::GuardError;
 pub use interlock::{Interlock, NotPermitted, Permission};
-pub use keys::Key;
 pub use record::Entry;
 pub use report::{Finding, Report, Source};
 pub use set::{SetEntry, Value};
-pub use settings::{SET_BYTES, Settings};
+pub use settings::SET_BYTES;
 
 use guard::Guard;
 

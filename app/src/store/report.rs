@@ -4,7 +4,7 @@ use core::fmt;
 
 use leadscrew::params::ParamError;
 
-use super::Key;
+use leadscrew::settings::Key;
 
 /// Where the settings come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

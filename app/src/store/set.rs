@@ -10,7 +10,7 @@
 //!
 //! so that an entry of unknown name or type can be passed over, and kept.
 
-use super::Key;
+use leadscrew::settings::Key;
 
 const HEADER: usize = 3;
 const NUMBER: u8 = 0;

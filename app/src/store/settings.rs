@@ -1,38 +1,23 @@
 //! Settings to and from the store.
 
 use embedded_storage::nor_flash::NorFlash;
-use leadscrew::estimator::EstimatorConfig;
-use leadscrew::estimator::observer::ObserverParams;
-use leadscrew::params::AxisParams;
+use leadscrew::settings::{Key, Number, Settings, Values};
 
-use super::keys::Values;
 use super::set::{Set, SetWriter};
-use super::{Error, Finding, Key, Kind, Permission, Report, Saved, SetEntry, Source, Store, Value};
+use super::{Error, Finding, Kind, Permission, Report, Saved, SetEntry, Source, Store, Value};
 
 /// Longest set of parameters, bytes, what other firmware left in it included.
 pub const SET_BYTES: usize = 12 * 1024;
 
-/// All that is set on an axis: its parameters, and those of the observer, which [`AxisParams`] holds only as they come
-/// to in ticks. Other estimators are known by their names.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// The parameters; the estimators among them follow from their names and from the observer's parameters.
-    pub axis: AxisParams,
-    /// The observer's parameters.
-    pub observer: ObserverParams,
+/// What the store does with settings.
+trait Stored {
+    /// Its bytes into `memory`; gives how many there are, or would be.
+    fn write(&mut self, memory: &mut [u8]) -> usize;
+    fn is_known(&mut self, name: &str) -> bool;
+    fn read(&mut self, bytes: &[u8], report: &mut Report, note: &mut dyn FnMut(Finding<'_>));
 }
 
-impl Settings {
-    /// All defaults, with `estimator`.
-    #[must_use]
-    pub fn new(estimator: EstimatorConfig) -> Self {
-        Self {
-            axis: AxisParams::new(estimator),
-            observer: ObserverParams::default(),
-        }
-    }
-
-    /// Its bytes into `memory`; gives how many there are, or would be.
+impl Stored for Settings {
     fn write(&mut self, memory: &mut [u8]) -> usize {
         let mut save = Save(SetWriter::new(memory));
         self.visit(&mut save);
@@ -43,6 +28,24 @@ impl Settings {
         let mut known = Known { name, found: false };
         self.visit(&mut known);
         known.found
+    }
+
+    fn read(&mut self, bytes: &[u8], report: &mut Report, note: &mut dyn FnMut(Finding<'_>)) {
+        let mut load = Load {
+            set: Set::new(bytes),
+            report,
+            note,
+        };
+        let names = self.visit(&mut load);
+        if let Err(error) = self.choose(names) {
+            report.invalid = Some(error.into());
+        }
+        for entry in Set::new(bytes) {
+            if !self.is_known(entry.name) {
+                report.unknown += 1;
+                note(Finding::Unknown { name: entry.name });
+            }
+        }
     }
 }
 
@@ -157,30 +160,10 @@ fn keep_unknown(set: &mut [u8], settings: &mut Settings) -> usize {
     kept
 }
 
-impl Settings {
-    fn read(&mut self, bytes: &[u8], report: &mut Report, note: &mut dyn FnMut(Finding<'_>)) {
-        let mut load = Load {
-            set: Set::new(bytes),
-            report,
-            note,
-        };
-        let names = self.visit(&mut load);
-        if let Err(error) = self.choose(names) {
-            report.invalid = Some(error.into());
-        }
-        for entry in Set::new(bytes) {
-            if !self.is_known(entry.name) {
-                report.unknown += 1;
-                note(Finding::Unknown { name: entry.name });
-            }
-        }
-    }
-}
-
 struct Save<'m>(SetWriter<'m>);
 
 impl Values for Save<'_> {
-    fn number(&mut self, key: Key, _: (f64, f64), value: f64) -> f64 {
+    fn number(&mut self, key: Key, _: &Number, value: f64) -> f64 {
         self.0.entry(key, Value::Number(value));
         value
     }
@@ -209,16 +192,16 @@ impl Load<'_> {
 }
 
 impl Values for Load<'_> {
-    fn number(&mut self, key: Key, range: (f64, f64), default: f64) -> f64 {
+    fn number(&mut self, key: Key, number: &Number, default: f64) -> f64 {
         let finding = match self.set.value(key) {
-            Some(Value::Number(value)) if (range.0..=range.1).contains(&value) => {
+            Some(Value::Number(value)) if number.allows(value) => {
                 self.report.taken += 1;
                 return value;
             }
             Some(Value::Number(value)) => Finding::OutOfRange {
                 key,
                 value,
-                range,
+                range: (number.min, number.max),
                 default,
             },
             Some(_) => Finding::WrongType { key },
@@ -250,7 +233,7 @@ struct Known<'n> {
 }
 
 impl Values for Known<'_> {
-    fn number(&mut self, key: Key, _: (f64, f64), value: f64) -> f64 {
+    fn number(&mut self, key: Key, _: &Number, value: f64) -> f64 {
         self.found |= key.is(self.name);
         value
     }

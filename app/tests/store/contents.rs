@@ -5,10 +5,9 @@ use leadscrew::encoder_map::encode::{MapContent, encode};
 use leadscrew::encoder_map::format::image_len;
 use leadscrew::encoder_map::{Form, Residual};
 use leadscrew::estimator::EstimatorConfig;
+use leadscrew::settings::Settings;
 use leadscrew::units::Position;
-use leadscrew_app::store::{
-    Finding, Interlock, Kind, Permission, Report, SET_BYTES, Settings, Store,
-};
+use leadscrew_app::store::{Finding, Interlock, Kind, Permission, Report, SET_BYTES, Store};
 
 use super::flash::SimFlash;
 

@@ -9,13 +9,14 @@ use std::path::Path;
 
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::params::{AxisParams, ParamError};
+use leadscrew::settings::Settings;
 use leadscrew::tuning::DriveModel;
 use leadscrew::tuning::autotune::{AutotuneError, Report as Offer, observer_on};
 use leadscrew::units::checked;
 
 use super::identify::{bench, identify};
 use super::{check_replaceable, print, print_json, write_file};
-use crate::axis_file::{self, AxisFile};
+use crate::axis_file;
 use crate::cli::AutotuneArgs;
 use crate::commissioning::{counts_on, feed_within, learned, map_of, offer};
 use crate::error::CommandError;
@@ -33,7 +34,7 @@ const MAX_FEED_MM_PER_MIN: f64 = 9000.0;
 /// What is offered, and how it does.
 struct Tuned {
     max_feed_mm_per_min: f64,
-    file: AxisFile,
+    file: Settings,
     offer: Offer,
     before: AxisParams,
     /// Figures on the machine; none where the axis does not come to its goal.
@@ -114,7 +115,7 @@ fn tune(
     };
     Ok(Tuned {
         max_feed_mm_per_min: max_feed,
-        file: AxisFile {
+        file: Settings {
             axis,
             observer: observer_on(&counts_on, model),
         },
