@@ -6,7 +6,7 @@ use super::segments::{SEGMENTS, segment_start};
 pub const ORDERS: usize = 32;
 
 /// Errors by wavelength, d rms.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Bands {
     /// Once a revolution.
     pub first: f64,

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Data from which no map can be learned. The text says what to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Data from which no map can be learned. The text says what to do. It goes over the link: variants are only appended.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Refusal {
     /// Edges per revolution that cannot be mapped.

@@ -46,7 +46,7 @@ impl Default for Requirements {
 }
 
 /// One run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RunSummary {
     /// The shaft went backward.
     pub backward: bool,
@@ -67,7 +67,7 @@ pub struct RunSummary {
 }
 
 /// The harmonic in which a run differs most from the mean of all.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Disagreement {
     /// Cycles a revolution.
     pub order: u32,
@@ -82,7 +82,7 @@ pub const NOT_SEPARATED: &str = "motion in step with the shaft at every speed (a
     toothed drive) cannot be told from the encoder's errors by the encoder itself: it is in the map";
 
 /// Estimated errors of the map; see [`NOT_SEPARATED`] for what they do not show.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Residual {
     /// White error of each edge, d rms.
     pub edge_sigma_d: f64,

@@ -175,6 +175,19 @@ impl Program {
         }
     }
 
+    /// The same bounds with other segments; those beyond [`MAX_SEGMENTS`] are left out.
+    #[must_use]
+    pub fn with(&self, segments: &[Segment]) -> Self {
+        let Self {
+            segments, length, ..
+        } = Self::new(segments, self.bounds);
+        Self {
+            segments,
+            length,
+            ..*self
+        }
+    }
+
     /// The same as an excitation of the closed loop.
     #[must_use]
     pub const fn closed(self) -> Self {

@@ -5,6 +5,7 @@ use super::frame::{Channel, Frame, FrameBuffer, Header, TooLarge};
 use super::record::{Gaps, record_from_bytes};
 use super::reply::Reply;
 use super::request::Request;
+use super::stream::Samples;
 use crate::telemetry::Record;
 
 /// What came from the axis.
@@ -14,6 +15,8 @@ pub enum Answer<'a> {
     Reply(u16, Reply<'a>),
     /// The record of a tick.
     Record(Record),
+    /// Samples of signals.
+    Samples(Samples<'a>),
 }
 
 /// The client of a link.
@@ -30,6 +33,7 @@ struct Inner {
     sequence: u16,
     nonce: u32,
     gaps: Gaps,
+    sample_gaps: Gaps,
 }
 
 impl Client {
@@ -92,9 +96,24 @@ impl Client {
     pub const fn records_lost(&self) -> u32 {
         self.inner.gaps.lost()
     }
+
+    /// Frames of samples of this session that did not arrive.
+    #[must_use]
+    pub const fn samples_lost(&self) -> u32 {
+        self.inner.sample_gaps.lost()
+    }
 }
 
 impl Inner {
+    /// Takes what comes in a sequence of its own; false for what comes late.
+    const fn is_in_turn(&mut self, answer: &Answer<'_>, sequence: u16) -> bool {
+        match answer {
+            Answer::Reply(..) => true,
+            Answer::Record(_) => self.gaps.take(sequence),
+            Answer::Samples(_) => self.sample_gaps.take(sequence),
+        }
+    }
+
     fn answer<'f>(&mut self, frame: &Frame<'f>, dropped: &mut Dropped) -> Option<Answer<'f>> {
         let Header {
             channel,
@@ -109,16 +128,18 @@ impl Inner {
             Channel::Request => None,
             Channel::Reply => frame.message().map(|reply| Answer::Reply(sequence, reply)),
             Channel::Telemetry => record_from_bytes(frame.body).map(Answer::Record),
+            Channel::Samples => Samples::of(frame.body).map(Answer::Samples),
         };
         match answer {
             None => dropped.count_unknown(),
-            Some(Answer::Record(_)) if !self.gaps.take(sequence) => {
+            Some(other) if !self.is_in_turn(&other, sequence) => {
                 dropped.count_late();
                 return None;
             }
             Some(Answer::Reply(_, Reply::Hello { nonce, session, .. })) if nonce == self.nonce => {
                 self.session = session;
                 self.gaps = Gaps::default();
+                self.sample_gaps = Gaps::default();
             }
             Some(_) => {}
         }

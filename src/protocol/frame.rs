@@ -27,11 +27,13 @@ pub enum Channel {
     Reply = 2,
     /// A [`Record`](crate::telemetry::Record) of a tick; its sequence counts the records of the session.
     Telemetry = 3,
+    /// [`Samples`](super::stream::Samples) of signals; its sequence counts these frames of the session.
+    Samples = 4,
 }
 
 impl Channel {
     /// All channels, by number.
-    pub const ALL: &'static [Self] = &[Self::Request, Self::Reply, Self::Telemetry];
+    pub const ALL: &'static [Self] = &[Self::Request, Self::Reply, Self::Telemetry, Self::Samples];
 
     /// The channel of that number.
     #[must_use]
@@ -40,6 +42,7 @@ impl Channel {
             1 => Some(Self::Request),
             2 => Some(Self::Reply),
             3 => Some(Self::Telemetry),
+            4 => Some(Self::Samples),
             _ => None,
         }
     }

@@ -16,6 +16,7 @@
 pub mod client;
 pub mod decoder;
 mod describe;
+pub mod experiment;
 pub mod frame;
 pub mod lease;
 pub mod parameters;
@@ -25,6 +26,7 @@ pub mod reply;
 pub mod request;
 pub mod service;
 pub mod session;
+pub mod stream;
 
 pub use describe::{Described, FieldText};
 

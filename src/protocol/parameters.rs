@@ -1,9 +1,8 @@
-//! Parameters over the link: by their place in the list of all sections, or by `section.name`.
+//! Parameters over the link: by their place in the list of all, or by `section.name`.
 
 use super::refusal::Refusal;
 use super::reply::Reply;
-use crate::parameter_table::ParameterTable;
-use crate::params::{AxisParams, SectionVisitor};
+use crate::settings::{Key, Number, Settings, Values};
 
 /// Which parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,92 +13,127 @@ pub enum Which<'n> {
     Named(&'n str),
 }
 
-/// A parameter as the link tells of it, found on the way through the sections.
+/// What it is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NewValue<'n> {
+    /// A number, in the parameter's unit.
+    Number(f64),
+    /// One of its words.
+    Word(&'n str),
+}
+
+/// A parameter as the link tells of it, found on the way through all of them.
 struct Search<'n> {
     which: Which<'n>,
     /// Written where it is found.
-    value: Option<f64>,
+    value: Option<NewValue<'n>>,
     /// Parameters seen so far.
     count: u16,
-    /// Place of the one found.
-    index: u16,
     found: Option<Found>,
+    refused: Option<Refusal>,
 }
 
 #[derive(Clone, Copy)]
 struct Found {
     index: u16,
-    section: &'static str,
-    name: &'static str,
-    unit: &'static str,
-    /// Value before, smallest, largest, default.
-    figures: [f64; 4],
+    key: Key,
+    what: What,
+}
+
+#[derive(Clone, Copy)]
+enum What {
+    Number(Number, f64),
+    Word {
+        word: &'static str,
+        at: u8,
+        words: u8,
+    },
 }
 
 impl Search<'_> {
-    /// Goes over the names of a section; the place of the one that is searched for.
-    // What does not depend on the section's type is in calls: there are many sections.
-    #[inline(never)]
-    fn place(
-        &mut self,
-        section: &str,
-        names: &mut dyn Iterator<Item = &'static str>,
-    ) -> Option<usize> {
-        let mut place = None;
-        for (index, name) in names.enumerate() {
-            let is_it = match self.which {
-                Which::At(at) => at == self.count,
-                Which::Named(asked) => asked.split_once('.') == Some((section, name)),
-            };
-            if is_it {
-                place = Some(index);
-                self.index = self.count;
-            }
-            self.count = self.count.saturating_add(1);
-        }
-        place
+    /// Goes over one parameter; true if it is the one.
+    fn is_it(&mut self, key: Key) -> bool {
+        let is_it = match self.which {
+            Which::At(at) => at == self.count,
+            Which::Named(name) => key.is(name),
+        };
+        self.count = self.count.saturating_add(1);
+        is_it
     }
 
-    /// Keeps what was found; gives the value to write, if there is one and it may be.
-    #[inline(never)]
-    fn keep(&mut self, found: Found) -> Option<f64> {
-        let [_, min, max, _] = found.figures;
-        self.found = Some(found);
-        self.value.filter(|value| (min..=max).contains(value))
+    fn keep(&mut self, key: Key, what: What) {
+        let index = self.count.saturating_sub(1);
+        self.found = Some(Found { index, key, what });
     }
 }
 
-impl SectionVisitor for Search<'_> {
-    fn section<T: ParameterTable>(&mut self, section: &'static str, table: &mut T) {
-        let names = &mut T::FIELDS.iter().map(|field| field.name);
-        let place = self.place(section, names);
-        if let Some(field) = place.and_then(|place| T::FIELDS.get(place)) {
-            let default = (field.get)(&T::default());
-            let value = self.keep(Found {
-                index: self.index,
-                section,
-                name: field.name,
-                unit: field.unit,
-                figures: [(field.get)(table), field.min, field.max, default],
-            });
-            if let Some(value) = value {
-                (field.set)(table, value);
+impl Values for Search<'_> {
+    fn number(&mut self, key: Key, number: &Number, value: f64) -> f64 {
+        if !self.is_it(key) {
+            return value;
+        }
+        self.keep(key, What::Number(*number, value));
+        match self.value {
+            Some(NewValue::Number(new)) if number.allows(new) => new,
+            Some(NewValue::Number(_)) => {
+                self.refused = Some(Refusal::ParameterOutOfRange);
+                value
             }
+            Some(NewValue::Word(_)) => {
+                self.refused = Some(Refusal::WrongType);
+                value
+            }
+            None => value,
+        }
+    }
+
+    fn word(&mut self, key: Key, words: &[&'static str], value: &'static str) -> &'static str {
+        if !self.is_it(key) {
+            return value;
+        }
+        let at = words.iter().position(|word| *word == value);
+        let what = What::Word {
+            word: value,
+            at: at.unwrap_or(0) as u8,
+            words: words.len() as u8,
+        };
+        self.keep(key, what);
+        match self.value {
+            Some(NewValue::Word(new)) => {
+                let known = words.iter().find(|word| **word == new);
+                known.copied().unwrap_or_else(|| {
+                    self.refused = Some(Refusal::UnknownWord);
+                    value
+                })
+            }
+            Some(NewValue::Number(_)) => {
+                self.refused = Some(Refusal::WrongType);
+                value
+            }
+            None => value,
         }
     }
 }
 
-// A call: it goes through every section.
+// A call: it goes through every parameter.
 #[inline(never)]
-fn search<'n>(params: &mut AxisParams, which: Which<'n>, value: Option<f64>) -> Search<'n> {
+fn search<'n>(
+    settings: &mut Settings,
+    which: Which<'n>,
+    value: Option<NewValue<'n>>,
+) -> Search<'n> {
     let mut search = Search {
         which,
         value,
         count: 0,
-        index: 0,
         found: None,
+        refused: None,
     };
-    params.visit_sections(&mut search);
+    let names = settings.visit(&mut search);
+    if value.is_some() {
+        // One that cannot be made is found again by validation, once all are set.
+        settings.note(names);
+    }
     search
 }
 
@@ -107,35 +141,46 @@ fn search<'n>(params: &mut AxisParams, which: Which<'n>, value: Option<f64>) -> 
 ///
 /// # Errors
 /// [`Refusal::UnknownParameter`]
-pub fn parameter(params: &mut AxisParams, which: Which<'_>) -> Result<Reply<'static>, Refusal> {
-    let search = search(params, which, None);
-    let found = search.found.ok_or(Refusal::UnknownParameter)?;
-    let [value, min, max, default] = found.figures;
-    Ok(Reply::Parameter {
-        index: found.index,
-        count: search.count,
-        section: found.section,
-        name: found.name,
-        unit: found.unit,
-        value,
-        min,
-        max,
-        default,
+pub fn parameter(settings: &mut Settings, which: Which<'_>) -> Result<Reply<'static>, Refusal> {
+    let search = search(settings, which, None);
+    let count = search.count;
+    let Found { index, key, what } = search.found.ok_or(Refusal::UnknownParameter)?;
+    let Key { section, name } = key;
+    Ok(match what {
+        What::Number(number, value) => Reply::Parameter {
+            index,
+            count,
+            section,
+            name,
+            unit: number.unit,
+            value,
+            min: number.min,
+            max: number.max,
+            default: number.default,
+        },
+        What::Word { word, at, words } => Reply::Word {
+            index,
+            count,
+            section,
+            name,
+            word,
+            at,
+            words,
+        },
     })
 }
 
-/// Writes a parameter; gives the value before. Whether it goes with the others is for validation to say.
+/// Writes a parameter. Whether it goes with the others is for [`Settings::validate`] to say.
 ///
 /// # Errors
-/// [`Refusal::UnknownParameter`], [`Refusal::ParameterOutOfRange`]; nothing is changed then.
-pub fn write(params: &mut AxisParams, which: Which<'_>, value: f64) -> Result<f64, Refusal> {
-    let found = search(params, which, Some(value))
-        .found
-        .ok_or(Refusal::UnknownParameter)?;
-    let [before, min, max, _] = found.figures;
-    if (min..=max).contains(&value) {
-        Ok(before)
-    } else {
-        Err(Refusal::ParameterOutOfRange)
-    }
+/// [`Refusal::UnknownParameter`], [`Refusal::ParameterOutOfRange`], [`Refusal::UnknownWord`], [`Refusal::WrongType`];
+/// nothing is changed then.
+pub fn write(
+    settings: &mut Settings,
+    which: Which<'_>,
+    value: NewValue<'_>,
+) -> Result<(), Refusal> {
+    let search = search(settings, which, Some(value));
+    search.found.ok_or(Refusal::UnknownParameter)?;
+    search.refused.map_or(Ok(()), Err)
 }

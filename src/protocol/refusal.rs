@@ -102,6 +102,48 @@ refusals! {
     NotSupported = 28, "See the capabilities in the hello.";
     /// The start of the move has passed before the axis saw it.
     TooLate = 29, "Repeat the request; tell of it if it happens often: the axis's planner is too slow.";
+    /// The control rate or the edge timer was set to another value.
+    RestartNeeded = 30, "Save the parameters and restart the axis.";
+    /// The parameter is not one of the words.
+    UnknownWord = 31, "See docs/parameters.md for its words.";
+    /// The parameter is a number, or it is a word.
+    WrongType = 32, "Set a number as a number and a word as a word.";
+    /// There is no edit under way.
+    NoEdit = 33, "Open an edit first; enabling the axis drops one.";
+    /// The work memory is lent to something else.
+    WorkMemoryLent = 34, "End the scope, the experiment or the learning that has it.";
+    /// The program has as many segments as it may have, or none.
+    WrongProgram = 35, "State the bounds, then 1 to 8 segments, then start.";
+    /// The axis moves at zero command.
+    NotAtRest = 36, "Set the offset of the drive so that it stands, or wait until it does.";
+    /// An experiment runs, or was not ended.
+    ExperimentRuns = 37, "Wait for its end, then end it.";
+    /// There is no such signal, or there are too many.
+    UnknownSignal = 38, "Choose up to 8 signals of the table in docs/scope.md.";
+    /// The scope cannot be set up so.
+    WrongScope = 39, "Ask for a sample every tick or more rarely, for fewer samples, and for fewer before the trigger than in all.";
+    /// The scope is not complete.
+    ScopeNotReady = 40, "Wait for its trigger, trigger it, or end it.";
+    /// Nothing is being learned, or no map was made.
+    NotLearning = 41, "Begin learning, run it, finish it, then ask.";
+    /// The learner refused; its own reason tells more.
+    LearningRefused = 42, "Ask how the learning stands: its reply has the reason.";
+    /// There is no such kind of content in the store.
+    UnknownKind = 43, "1 parameters, 2 encoder map, 3 screw table.";
+    /// Nothing is saved of that kind, or not so much.
+    NothingStored = 44, "Save it first.";
+    /// The bytes to be saved are not those that were sent.
+    WrongChecksum = 45, "Send them anew.";
+    /// The bytes to be saved are no content of that kind.
+    WrongContent = 46, "Send what a backup of that kind gave, of the same version.";
+    /// The store is full.
+    StoreFull = 47, "Erase what is not needed: an encoder map, a screw table.";
+    /// The store cannot be used, or its flash failed.
+    StoreFailed = 48, "Erase all of it; if that fails, the flash is worn out: change the board.";
+    /// The memory for maps is taken until the next restart.
+    MapMemoryTaken = 49, "Restart the axis: a saved map is in use then.";
+    /// A gear is engaged, or a thread is armed.
+    Engaged = 50, "Disengage it first.";
 }
 
 impl core::fmt::Display for Refusal {

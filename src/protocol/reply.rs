@@ -23,6 +23,14 @@ pub const CAN_HOME: u32 = 1;
 pub const CAN_SET: u32 = 1 << 1;
 /// Records can be subscribed to.
 pub const CAN_RECORD: u32 = 1 << 2;
+/// What is set can be saved.
+pub const CAN_SAVE: u32 = 1 << 3;
+/// Experiments can be run.
+pub const CAN_EXPERIMENT: u32 = 1 << 4;
+/// There is a scope, and signals can be streamed.
+pub const CAN_SCOPE: u32 = 1 << 5;
+/// The encoder can be learned.
+pub const CAN_LEARN: u32 = 1 << 6;
 
 messages! {
     /// A reply.
@@ -53,7 +61,8 @@ messages! {
             lease_ticks: u32,
             /// The last tick.
             tick: u32,
-            /// What it can do: bit 0 homing, 1 parameters, 2 telemetry records; other bits are of later versions.
+            /// What it can do: bit 0 homing, 1 parameters, 2 telemetry records, 3 store, 4 experiments, 5 scope and stream,
+            /// 6 map learning; other bits are of later versions.
             capabilities: u32,
             /// Room for what is recorded, bytes.
             work_memory: u32,
@@ -124,6 +133,164 @@ messages! {
             max: f64,
             /// What it is if nobody sets it.
             default: f64,
+        }
+        /// A parameter that is one of a few words.
+        Word = 6 {
+            /// Its place in the list.
+            index: u16,
+            /// How many there are.
+            count: u16,
+            /// Its section; empty where it has none.
+            section: &'a str,
+            /// Its name.
+            name: &'a str,
+            /// Its value.
+            word: &'a str,
+            /// Which of the words it is, from 0.
+            at: u8,
+            /// How many words there are; a request for the same parameter with another word is refused with them all.
+            words: u8,
+        }
+        /// A fault with its context.
+        Fault = 7 {
+            /// Tick in which it was found.
+            tick: u32,
+            /// Its number; 0: none is latched.
+            fault: u8,
+            /// Number of the [`State`](crate::supervisor::State) before.
+            state: u8,
+            /// What was seen, 2⁻¹⁶ of the unit that the table of faults states.
+            value: i64,
+            /// What is allowed.
+            limit: i64,
+            /// Bit n: the fault of number n came later.
+            later: u32,
+            /// Where the axis was by the encoder, 2⁻¹⁶ d.
+            position: i64,
+            /// How fast it was, 2⁻²⁰ d/tick.
+            velocity: i32,
+            /// Where it should have been, 2⁻¹⁶ d.
+            setpoint_position: i64,
+            /// How fast it should have been, 2⁻²⁰ d/tick.
+            setpoint_velocity: i32,
+            /// Setpoint less position, 2⁻¹⁶ d.
+            following_error: i32,
+            /// What was put out, 2⁻³⁰ of full command.
+            command: i32,
+        }
+        /// What the tick counted since it was switched on.
+        Counters = 8 {
+            /// Ticks.
+            ticks: u32,
+            /// Ticks whose inputs came late.
+            late: u32,
+            /// Ticks that took too long.
+            overlong: u32,
+            /// Records that found the queue to the link full.
+            lost_records: u32,
+            /// Latest start of a tick, clocks of its timer.
+            worst_start: u32,
+            /// Latest end of a tick, clocks of its timer.
+            worst_end: u32,
+            /// Indexes of the encoder; wraps.
+            indexes: u32,
+            /// Count at the last index.
+            index_count: i64,
+            /// Counts from the index before it, along the way that was gone.
+            index_distance: i64,
+        }
+        /// What is saved of a kind.
+        Stored = 9 {
+            /// As in the request.
+            kind: u8,
+            /// Version of its format.
+            version: u16,
+            /// Its length, bytes; 0: nothing is saved.
+            length: u32,
+            /// Its checksum.
+            crc: u32,
+        }
+        /// Bytes of what is saved.
+        Bytes = 10 {
+            /// Where they begin.
+            offset: u32,
+            /// The bytes; fewer than asked for only at the end.
+            bytes: &'a [u8],
+        }
+        /// How the experiment stands.
+        Experiment = 11 {
+            /// The last tick.
+            tick: u32,
+            /// 0 none, 1 runs, 2 complete, 3 left its window, 4 too fast, 5 too long, 6 ended from outside, 7 not permitted.
+            ending: u8,
+            /// Segment under way.
+            segment: u8,
+            /// Ticks since it began.
+            ticks: u32,
+            /// Records in the work memory.
+            records: u32,
+            /// There was no room for a record, or a tick was lost on the way.
+            is_torn: bool,
+            /// Count now.
+            count: i64,
+        }
+        /// Words of the work memory.
+        Words = 12 {
+            /// Where they begin.
+            offset: u32,
+            /// The words, 4 bytes each, the low one first.
+            bytes: &'a [u8],
+        }
+        /// How the scope stands.
+        Scope = 13 {
+            /// 0 not armed, 1 fills before the trigger, 2 waits for it, 3 fills behind it, 4 complete.
+            phase: u8,
+            /// Numbers of the signals.
+            signals: &'a [u8],
+            /// Ticks a sample.
+            every: u16,
+            /// Samples so far.
+            samples: u32,
+            /// The sample at the trigger.
+            trigger: u32,
+            /// Tick of the first sample.
+            tick: u32,
+            /// Ticks that it did not see.
+            missed: u32,
+            /// Whole value of each signal in the first sample, 8 bytes each, the low one first.
+            bases: &'a [u8],
+        }
+        /// Samples of the scope.
+        Samples = 14 {
+            /// The first of them.
+            index: u32,
+            /// The samples, signal by signal, 4 bytes each, the low one first.
+            bytes: &'a [u8],
+        }
+        /// How the learning stands.
+        Learning = 15 {
+            /// 0 none, 1 between runs, 2 waits for the index, 3 measures the speed, 4 averages, 5 the run is complete, 6 a map is
+            /// there.
+            phase: u8,
+            /// Whole revolutions in the average.
+            revolutions: u32,
+            /// Runs that are complete.
+            runs: u8,
+            /// What the last run showed.
+            last: Option<crate::calibration::RunSummary>,
+            /// Why the last run was dropped, or no map made.
+            refusal: Option<crate::calibration::Refusal>,
+        }
+        /// What was learned.
+        Learned = 16 {
+            /// The errors: what stays without a map, d rms.
+            errors: crate::calibration::Bands,
+            /// Where runs disagree most.
+            disagreement: crate::calibration::Disagreement,
+            /// Estimated errors of the map.
+            residual: crate::calibration::Residual,
+            /// Bytes of its image.
+            length: u32,
         }
     }
 }

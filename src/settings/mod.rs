@@ -159,6 +159,18 @@ impl Settings {
         };
     }
 
+    /// Notes the estimators of those names, which [`Self::validate`] makes of their parameters.
+    pub fn note(&mut self, names: EstimatorNames) {
+        let named = |name| EstimatorConfig::by_name(name).ok().flatten();
+        if names.first != self.axis.estimator.name() {
+            self.axis.estimator = named(names.first).unwrap_or(self.axis.estimator);
+        }
+        let second = self.axis.second_estimator;
+        if names.second != second.map_or(NONE, |estimator| estimator.name()) {
+            self.axis.second_estimator = named(names.second);
+        }
+    }
+
     /// Makes the estimators of those names.
     ///
     /// # Errors

@@ -35,8 +35,9 @@ fn messages(all: &[Described], note: impl Fn(&Described) -> &'static str) -> Str
         let fields = message.fields.iter().map(|field| {
             let kind = field
                 .kind
-                .replace("& 'a str", "&str")
-                .replace("&'a str", "&str");
+                .replace("& 'a ", "&")
+                .replace("&'a ", "&")
+                .replace("crate::", "");
             format!("`{}: {kind}` {}", field.name, plain(field.what))
         });
         let fields = fields.collect::<Vec<_>>().join("<br>");
@@ -53,7 +54,7 @@ fn messages(all: &[Described], note: impl Fn(&Described) -> &'static str) -> Str
 
 /// Requests that need the lease, by number: read from bodies that are zeros but for it.
 fn needs_lease(message: &Described) -> &'static str {
-    let mut body = [0; 64];
+    let mut body = [0; 400];
     body[0] = message.number;
     let (request, _) = postcard::take_from_bytes::<Request<'_>>(&body).unwrap();
     if request.needs_lease() {
@@ -140,7 +141,7 @@ fn the_example_is_what_the_code_makes_and_reads() {
             match frame.header.channel {
                 Channel::Request => assert_eq!(frame.message(), Some(request)),
                 Channel::Reply => assert_eq!(frame.message(), Some(reply)),
-                Channel::Telemetry => panic!(),
+                Channel::Telemetry | Channel::Samples => panic!(),
             }
             channels.push(frame.header);
         });

@@ -1,12 +1,13 @@
 //! Any bytes into a link, against a reading of them that shares nothing with the decoder. For the tests and for the fuzzer.
 
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::params::{AxisConfig, AxisParams};
+use leadscrew::params::AxisConfig;
 use leadscrew::protocol::decoder::Decoder;
 use leadscrew::protocol::frame::{Channel, FrameBuffer, Header, MAX_BODY, MAX_CONTENT};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::CAN_SET;
-use leadscrew::protocol::service::{Identity, Order, Port, Seen, Service};
+use leadscrew::protocol::service::{Identity, Order, Passed, Port, Seen, Service};
+use leadscrew::settings::Settings;
 use leadscrew::supervisor::State;
 
 /// CRC-32 as of zip, bit by bit.
@@ -49,7 +50,7 @@ pub fn good_frames(bytes: &[u8]) -> Vec<Vec<u8>> {
         let sum = content.split_off(covered);
         let is_good = content.len() + 4 <= MAX_CONTENT
             && sum == crc32(&content).to_le_bytes()
-            && (1..=3).contains(&content[0]);
+            && (1..=4).contains(&content[0]);
         is_good.then_some(content)
     };
     stretches.filter_map(good).collect()
@@ -62,14 +63,14 @@ struct Willing {
 }
 
 impl Port for Willing {
-    fn order(&mut self, order: &Order) -> Result<(), Refusal> {
+    fn order(&mut self, order: &Order) -> Result<Passed, Refusal> {
         self.orders += usize::from(*order != Order::Enable(false));
-        Ok(())
+        Ok(Passed::Taken)
     }
 
-    fn reconfigure(&mut self, _: &AxisConfig) -> Result<(), Refusal> {
+    fn reconfigure(&mut self, _: &AxisConfig) -> Result<Passed, Refusal> {
         self.orders += 1;
-        Ok(())
+        Ok(Passed::Taken)
     }
 }
 
@@ -97,7 +98,7 @@ pub fn check(bytes: &[u8]) -> usize {
         work_memory: 0,
         lead_ticks: 4,
     };
-    let mut service = Service::new(identity, &AxisParams::new(estimator)).unwrap();
+    let mut service = Service::new(identity, &Settings::new(estimator)).unwrap();
     let mut axis = Willing::default();
     let mut answers = 0;
     for (tick, part) in (0..).zip(bytes.chunks(50)) {

@@ -1,50 +1,61 @@
 //! Parameters over the link.
 
-use leadscrew::parameter_table::ParameterTable;
-use leadscrew::params::SectionVisitor;
+use leadscrew::estimator::paths::Choice;
 use leadscrew::protocol::frame::{Channel, FrameBuffer, Header};
-use leadscrew::protocol::parameters::{Which, parameter, write};
+use leadscrew::protocol::parameters::{NewValue, Which, parameter, write};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
+use leadscrew::settings::{Key, Number, Values};
 
-use crate::rig::{Rig, Said, params};
+use crate::rig::{Rig, Said, settings};
 
-struct Names(Vec<(String, f64)>);
+/// Names of all, numbers with their values.
+#[derive(Default)]
+struct Names(Vec<(String, Option<f64>)>);
 
-impl SectionVisitor for Names {
-    fn section<T: ParameterTable>(&mut self, section: &'static str, table: &mut T) {
-        for field in T::FIELDS {
-            self.0
-                .push((format!("{section}.{}", field.name), (field.get)(table)));
-        }
+impl Values for Names {
+    fn number(&mut self, key: Key, _: &Number, value: f64) -> f64 {
+        self.0.push((key.to_string(), Some(value)));
+        value
+    }
+
+    fn word(&mut self, key: Key, _: &[&'static str], value: &'static str) -> &'static str {
+        self.0.push((key.to_string(), None));
+        value
     }
 }
 
 #[test]
 fn every_parameter_is_listed_found_by_its_name_and_fits_a_frame() {
-    let mut params = params();
-    let mut names = Names(Vec::new());
-    params.visit_sections(&mut names);
+    let mut settings = settings();
+    let mut names = Names::default();
+    settings.visit(&mut names);
     for (place, (name, expected)) in (0..).zip(&names.0) {
-        let reply = parameter(&mut params, Which::At(place)).unwrap();
-        let Reply::Parameter {
-            index,
-            count,
-            section,
-            name: field,
-            value,
-            ..
-        } = reply
-        else {
-            panic!()
+        let reply = parameter(&mut settings, Which::At(place)).unwrap();
+        let (told, found, told_count, told_value) = match reply {
+            Reply::Parameter {
+                index,
+                count,
+                section,
+                name,
+                value,
+                ..
+            } => (index, [section, name], count, Some(value)),
+            Reply::Word {
+                index,
+                count,
+                section,
+                name,
+                ..
+            } => (index, [section, name], count, None),
+            _ => panic!(),
         };
-        assert_eq!((index, usize::from(count)), (place, names.0.len()));
-        assert_eq!(
-            (format!("{section}.{field}"), value),
-            (name.clone(), *expected)
-        );
-        assert_eq!(parameter(&mut params, Which::Named(name)).unwrap(), reply);
+        assert_eq!((told, usize::from(told_count)), (place, names.0.len()));
+        let found = found.join(".");
+        assert_eq!(found.trim_start_matches('.'), name);
+        assert_eq!(told_value, *expected);
+        assert_eq!(parameter(&mut settings, Which::Named(name)).unwrap(), reply);
         let header = Header {
             channel: Channel::Reply,
             session: 1,
@@ -61,7 +72,7 @@ fn every_parameter_is_listed_found_by_its_name_and_fits_a_frame() {
         Which::Named("output.limit.x"),
     ] {
         assert_eq!(
-            parameter(&mut params, which),
+            parameter(&mut settings, which),
             Err(Refusal::UnknownParameter)
         );
     }
@@ -69,18 +80,34 @@ fn every_parameter_is_listed_found_by_its_name_and_fits_a_frame() {
 
 #[test]
 fn a_value_out_of_range_is_not_written() {
-    let mut params = params();
-    let before = params;
+    let mut settings = settings();
+    let before = settings;
     for value in [-1.0, 1.5, f64::NAN, f64::INFINITY] {
-        let refused = write(&mut params, Which::Named("output.limit"), value);
+        let refused = write(
+            &mut settings,
+            Which::Named("output.limit"),
+            NewValue::Number(value),
+        );
         assert_eq!(refused, Err(Refusal::ParameterOutOfRange));
-        assert_eq!(params, before);
+        assert_eq!(settings, before);
     }
     assert_eq!(
-        write(&mut params, Which::Named("output.limit"), 0.5),
-        Ok(before.output.limit)
+        write(
+            &mut settings,
+            Which::Named("output.limit"),
+            NewValue::Number(0.5)
+        ),
+        Ok(())
     );
-    assert_eq!(params.output.limit.to_bits(), 0.5_f64.to_bits());
+    assert_eq!(settings.axis.output.limit.to_bits(), 0.5_f64.to_bits());
+    for (name, value, refusal) in [
+        ("output.limit", NewValue::Word("full"), Refusal::WrongType),
+        ("estimator", NewValue::Number(1.0), Refusal::WrongType),
+        ("estimator", NewValue::Word("best"), Refusal::UnknownWord),
+    ] {
+        let refused = write(&mut settings, Which::Named(name), value);
+        assert_eq!(refused, Err(refusal));
+    }
 }
 
 #[test]
@@ -101,7 +128,7 @@ fn a_parameter_is_set_over_the_line_all_of_it_or_nothing() {
         Refusal::Inconsistent,
     );
     let name = "motion.max_feed_mm_per_min";
-    let kept = Said::Parameter(params().motion.max_feed_mm_per_min);
+    let kept = Said::Parameter(settings().axis.motion.max_feed_mm_per_min);
     assert_eq!(rig.ask(&Request::Parameter { name }), kept);
     assert_eq!(*rig.way.axis.config(), before);
     rig.do_(&set("motion.max_feed_mm_per_min", 3000.0));
@@ -120,4 +147,66 @@ fn a_parameter_is_set_over_the_line_all_of_it_or_nothing() {
         panic!()
     };
     assert_eq!(setpoint_nm, 5_000_000);
+}
+
+#[test]
+fn an_edit_is_taken_as_a_whole_or_not_at_all() {
+    let mut rig = Rig::new();
+    rig.hello();
+    rig.do_(&Request::TakeLease {});
+    let before = *rig.way.axis.config();
+    let set = |name, value| Request::SetParameter { name, value };
+    rig.refused(&Request::TakeParameters {}, Refusal::NoEdit);
+    rig.do_(&Request::EditParameters {});
+    // Alone it does not go with the feed at full command.
+    rig.do_(&set("motion.max_feed_mm_per_min", 20_000.0));
+    rig.refused(&Request::TakeParameters {}, Refusal::Inconsistent);
+    rig.do_(&set("motion.full_command_feed_mm_per_min", 24_000.0));
+    assert_eq!(*rig.way.axis.config(), before);
+    rig.do_(&Request::TakeParameters {});
+    assert!(rig.way.axis.config().limits.velocity() > before.limits.velocity());
+    let taken = *rig.way.axis.config();
+    rig.do_(&Request::EditParameters {});
+    rig.do_(&set("motion.max_feed_mm_per_min", 1000.0));
+    rig.do_(&Request::DropParameters {});
+    rig.refused(&Request::TakeParameters {}, Refusal::NoEdit);
+    assert_eq!(*rig.way.axis.config(), taken);
+}
+
+#[test]
+fn an_estimator_is_chosen_by_its_name_and_made_of_its_parameters() {
+    let mut rig = Rig::new();
+    rig.hello();
+    rig.do_(&Request::TakeLease {});
+    let word = |name, word| Request::SetWord { name, word };
+    rig.do_(&Request::SetParameter {
+        name: "observer.natural_period_s",
+        value: 0.12,
+    });
+    rig.do_(&word("estimator", "observer"));
+    rig.do_(&word("paths.position", "estimate"));
+    let settings = *rig.service.settings();
+    assert_eq!(settings.axis.estimator.name(), "observer");
+    let of_parameters = settings.estimator("observer").unwrap();
+    assert_eq!(Some(settings.axis.estimator), of_parameters);
+    let in_force = rig.way.axis.config().estimators;
+    assert_eq!(*in_force.of(Choice::First), settings.axis.estimator);
+    rig.refused(&word("estimator", "obsrver"), Refusal::UnknownWord);
+}
+
+#[test]
+fn another_control_rate_waits_for_a_restart() {
+    let mut rig = Rig::new();
+    rig.hello();
+    rig.do_(&Request::TakeLease {});
+    let before = *rig.way.axis.config();
+    let rate = |value| Request::SetParameter {
+        name: "tick_hz",
+        value,
+    };
+    rig.do_(&rate(2500.0));
+    assert_eq!(*rig.way.axis.config(), before);
+    rig.refused(&Request::Enable {}, Refusal::RestartNeeded);
+    rig.do_(&rate(1000.0));
+    rig.do_(&Request::Enable {});
 }

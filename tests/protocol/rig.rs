@@ -3,12 +3,13 @@
 use leadscrew::axis::{Axis, Outputs, Request as AxisRequest};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::Reference;
-use leadscrew::params::{AxisConfig, AxisParams};
+use leadscrew::params::AxisConfig;
 use leadscrew::protocol::client::{Answer, Client};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::{CAN_HOME, CAN_SET, Reply};
 use leadscrew::protocol::request::Request;
-use leadscrew::protocol::service::{Identity, Order, Port, Seen, Service};
+use leadscrew::protocol::service::{Identity, Order, Passed, Port, Seen, Service};
+use leadscrew::settings::Settings;
 use leadscrew::supervisor::State;
 use leadscrew::telemetry::Record;
 use leadscrew_hal_mock::board::{Board, BoardParams};
@@ -75,7 +76,7 @@ pub struct Way {
 }
 
 impl Port for Way {
-    fn order(&mut self, order: &Order) -> Result<(), Refusal> {
+    fn order(&mut self, order: &Order) -> Result<Passed, Refusal> {
         if self.is_blocked {
             return Err(Refusal::QueueFull);
         }
@@ -90,20 +91,25 @@ impl Port for Way {
                 self.motions += u32::from(moves);
             }
         }
-        Ok(())
+        Ok(Passed::Taken)
     }
 
-    fn reconfigure(&mut self, config: &AxisConfig) -> Result<(), Refusal> {
-        Ok(self.axis.reconfigure(*config)?)
+    fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal> {
+        self.axis.reconfigure(*config)?;
+        Ok(Passed::Taken)
     }
 }
 
-pub fn params() -> AxisParams {
+pub fn settings() -> Settings {
     let scenario = MoveAndBack::standard(1000.0);
     let machine = MachineParams::z_16k20f3();
     let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
     let estimator = scenario.tuned(&machine, estimator, false).unwrap();
-    scenario.axis_params(&machine, estimator).unwrap()
+    let axis = scenario.axis_params(&machine, estimator).unwrap();
+    Settings {
+        axis,
+        ..Settings::new(estimator)
+    }
 }
 
 pub struct Rig {
@@ -126,7 +132,7 @@ pub struct Rig {
 
 impl Rig {
     pub fn new() -> Self {
-        let params = params();
+        let mut settings = settings();
         Self {
             board: Board::new(
                 &BoardParams::default(),
@@ -136,13 +142,13 @@ impl Rig {
             )
             .unwrap(),
             way: Way {
-                axis: Axis::new(params.validate().unwrap()),
+                axis: Axis::new(settings.validate().unwrap()),
                 enable: false,
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
             },
-            service: Service::new(IDENTITY, &params).unwrap(),
+            service: Service::new(IDENTITY, &settings).unwrap(),
             client: Client::new(),
             to_axis: Vec::new(),
             to_tool: Vec::new(),
@@ -197,6 +203,7 @@ impl Rig {
                 self.heard.push((sequence, Said::of(&reply)));
             }
             Answer::Record(record) => self.records.push(record),
+            Answer::Samples(_) => panic!("nobody asked for samples"),
         });
     }
 

@@ -21,7 +21,7 @@ fn each<'b, M: Deserialize<'b> + Serialize>(all: &[Described], bodies: &'b [Vec<
 
 fn bodies(count: usize) -> Vec<Vec<u8>> {
     let body = |number| {
-        let mut body = vec![0; 100];
+        let mut body = vec![0; 400];
         body[0] = number as u8;
         body
     };
@@ -56,7 +56,7 @@ fn every_message_is_read_by_its_number_and_described() {
             assert!(text.ends_with('.'), "{}: {text}", described.name);
         }
     }
-    for (number, all) in [(21, Request::ALL.len()), (6, Reply::ALL.len())] {
+    for (number, all) in [(54, Request::ALL.len()), (17, Reply::ALL.len())] {
         assert_eq!(all, number, "a new one is appended: count it here");
     }
 }
@@ -67,7 +67,7 @@ fn channels_lead_back_to_their_numbers() {
         assert_eq!(Channel::from_number(*channel as u8), Some(*channel));
     }
     assert_eq!(
-        (Channel::from_number(0), Channel::from_number(4)),
+        (Channel::from_number(0), Channel::from_number(5)),
         (None, None)
     );
 }

@@ -1,7 +1,7 @@
 //! What the axis and its planner refuse, in the numbers of the link.
 
 use super::Refusal;
-use crate::axis::{ReconfigureError, Refused};
+use crate::axis::{ReconfigureError, Refused, StartError};
 use crate::homing::HomeRefused;
 use crate::setpoint::plan::PlanError;
 use crate::setpoint::planner::PlannerError;
@@ -19,11 +19,10 @@ impl From<Refused> for Refusal {
             Refused::Gear(GearError::Disabled) => Self::NotEnabled,
             Refused::Gear(GearError::NotSelected) => Self::OtherSource,
             Refused::Select(SelectError::Moving) => Self::StillMoving,
-            // Threads, gears and experiments are not asked for over the link yet.
-            Refused::Select(SelectError::Engaged)
-            | Refused::Gear(_)
-            | Refused::Thread(_)
-            | Refused::Experiment(_) => Self::Busy,
+            Refused::Select(SelectError::Engaged) => Self::Engaged,
+            Refused::Experiment(error) => error.into(),
+            // Threads and gears are not asked for over the link yet.
+            Refused::Gear(_) | Refused::Thread(_) => Self::Busy,
         }
     }
 }
@@ -67,5 +66,16 @@ impl From<PlannerError> for Refusal {
 impl From<ReconfigureError> for Refusal {
     fn from(_: ReconfigureError) -> Self {
         Self::StillMoving
+    }
+}
+
+impl From<StartError> for Refusal {
+    fn from(error: StartError) -> Self {
+        match error {
+            StartError::NotReady => Self::NotEnabled,
+            StartError::Moving => Self::StillMoving,
+            StartError::NotAtRest => Self::NotAtRest,
+            StartError::Running => Self::ExperimentRuns,
+        }
     }
 }

@@ -1,15 +1,16 @@
 //! What is done for each request.
 
 use super::motion::Motion;
-use super::{Done, Inner, Order, Port, Seen};
+use super::{Done, Inner, Order, Passed, Port, Seen};
 use crate::axis;
 use crate::protocol::VERSION;
 use crate::protocol::decoder::Dropped;
 use crate::protocol::frame::Header;
-use crate::protocol::parameters::{Which, parameter, write};
+use crate::protocol::parameters::{NewValue, Which, parameter};
 use crate::protocol::refusal::Refusal;
 use crate::protocol::reply::{ENABLED, HELD, HOMED, LEASED, LEASED_HERE, MOVING, PLANNED, Reply};
 use crate::protocol::request::Request;
+use crate::setpoint::sources::Source;
 use crate::supervisor::State;
 
 impl Inner {
@@ -53,17 +54,35 @@ impl Inner {
         request: &Request<'_>,
         dropped: &Dropped,
         seen: &Seen,
+        port: &mut dyn Port,
     ) {
         let which = match *request {
             Request::Status {} => return self.answer(header, &self.status(seen)),
             Request::Link {} => return self.answer(header, &self.link(dropped)),
             Request::ParameterAt { index } => Which::At(index),
             Request::Parameter { name } => Which::Named(name),
-            _ => return self.answer(header, &Self::reply(seen, Err(Refusal::NotUnderstood))),
+            _ => return self.pass(header, request, seen, port),
         };
-        let reply = parameter(&mut self.params, which);
+        let settings = self.edit.as_mut().unwrap_or(&mut self.settings);
+        let reply = parameter(settings, which);
         let reply = reply.unwrap_or_else(|refusal| Self::reply(seen, Err(refusal)));
         self.answer(header, &reply);
+    }
+
+    /// Passes a question on to the board.
+    fn pass(&mut self, header: Header, request: &Request<'_>, seen: &Seen, port: &mut dyn Port) {
+        let Self {
+            settings, buffer, ..
+        } = self;
+        let mut is_said = false;
+        let said = port.serve(request, settings, &mut |reply| {
+            is_said = buffer.message(header, reply).is_ok();
+        });
+        if !is_said {
+            // Nothing to say, or more than a frame holds.
+            let refusal = said.err().unwrap_or(Refusal::NotSupported);
+            self.answer(header, &Self::reply(seen, Err(refusal)));
+        }
     }
 
     fn status(&self, seen: &Seen) -> Reply<'static> {
@@ -119,61 +138,76 @@ impl Inner {
         request: &Request<'_>,
         seen: &Seen,
         port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
-        let session = self.session.number();
-        let leased = if request.needs_lease() {
-            self.lease.check(session)
-        } else {
-            Ok(())
-        };
-        let outcome = leased.and_then(|()| self.try_to(request, seen, port));
-        self.remember(outcome)
-    }
-
-    fn try_to(
-        &mut self,
-        request: &Request<'_>,
-        seen: &Seen,
-        port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
+    ) -> Result<Passed, Refusal> {
+        if request.needs_lease() {
+            self.lease.check(self.session.number())?;
+        }
         let session = self.session.number();
         let axis = |port: &mut dyn Port, request| port.order(&Order::Axis(request));
+        let taken = |done: Result<(), Refusal>| done.map(|()| Passed::Taken);
         match *request {
-            Request::TakeLease {} => self.lease.take(session, seen.tick),
-            Request::RenewLease { seen: tick } => self.lease.renew(session, tick, seen.tick),
+            Request::TakeLease {} => taken(self.lease.take(session, seen.tick)),
+            Request::RenewLease { seen: tick } => taken(self.lease.renew(session, tick, seen.tick)),
             Request::ReleaseLease {} if self.may_move(seen) => Err(Refusal::StillMoving),
-            Request::ReleaseLease {} => self.lease.release(session),
-            Request::Enable {} if seen.fault.is_some() => Err(Refusal::FaultLatched),
-            Request::Enable {} if self.must_disable => Err(Refusal::QueueFull),
-            Request::Enable {} => port.order(&Order::Enable(true)),
+            Request::ReleaseLease {} => taken(self.lease.release(session)),
+            Request::Enable {} => self.enable(seen, port),
             Request::Disable {} => port.order(&Order::Enable(false)),
             Request::ClearFault {} => axis(port, axis::Request::ClearFault),
             Request::ClearWarnings {} => axis(port, axis::Request::ClearWarnings),
             Request::Home {} => axis(port, axis::Request::Home),
-            Request::Move {
-                target_nm,
-                feed_um_per_min: feed_um,
-            } => self.move_by(Motion::Move { target_nm, feed_um }, seen, port),
-            Request::Jog {
-                feed_um_per_min: feed_um,
-            } => self.move_by(Motion::Jog { feed_um }, seen, port),
-            Request::Hold {} => self.move_by(Motion::Hold, seen, port),
-            Request::Resume {} => self.move_by(Motion::Resume, seen, port),
-            Request::Override { percent } => self.move_by(Motion::Override { percent }, seen, port),
-            Request::Stop {} if seen.is_planned => self.move_by(Motion::Stop, seen, port),
-            Request::Stop {} => port.order(&Order::Enable(false)),
-            Request::SetParameter { name, value } => self.set(name, value, seen, port),
+            Request::Select { source } => axis(port, axis::Request::Select(source_of(source)?)),
+            Request::Stop {} if !seen.is_planned => port.order(&Order::Enable(false)),
             Request::Subscribe { every } => {
                 self.every = every;
                 self.until_record = 1;
-                Ok(())
+                Ok(Passed::Taken)
             }
-            Request::Hello { .. }
-            | Request::Status {}
-            | Request::Link {}
-            | Request::ParameterAt { .. }
-            | Request::Parameter { .. } => Err(Refusal::NotUnderstood),
+            Request::SetParameter { name, value } => {
+                self.set(name, NewValue::Number(value), seen, port)
+            }
+            Request::SetWord { name, word } => self.set(name, NewValue::Word(word), seen, port),
+            Request::EditParameters {} => self.open_edit(seen),
+            Request::TakeParameters {} => self.take_edit(seen, port),
+            Request::DropParameters {} => self.drop_edit(),
+            Request::Program { .. } | Request::Segment { .. } => taken(self.draft.add(request)),
+            Request::StartExperiment { .. } => {
+                let program = self.draft.program()?;
+                self.serve(request, port)?;
+                axis(port, axis::Request::StartExperiment(program))
+            }
+            Request::EndExperiment {} => axis(port, axis::Request::ReleaseExperiment),
+            Request::SaveParameters {}
+            | Request::SaveBytes { .. }
+            | Request::Erase { .. }
+            | Request::TakeMap {}
+            | Request::Restart {} => {
+                Self::check_off(seen)?;
+                self.serve(request, port)
+            }
+            _ => match Motion::of(request) {
+                Some(motion) => self.move_by(motion, seen, port),
+                None => self.serve(request, port),
+            },
         }
+    }
+
+    fn serve(&self, request: &Request<'_>, port: &mut dyn Port) -> Result<Passed, Refusal> {
+        port.serve(request, &self.settings, &mut |_| {})?;
+        Ok(Passed::Taken)
+    }
+
+    fn enable(&mut self, seen: &Seen, port: &mut dyn Port) -> Result<Passed, Refusal> {
+        if seen.fault.is_some() {
+            return Err(Refusal::FaultLatched);
+        }
+        if self.must_disable {
+            return Err(Refusal::QueueFull);
+        }
+        if self.needs_restart() {
+            return Err(Refusal::RestartNeeded);
+        }
+        self.edit = None;
+        port.order(&Order::Enable(true))
     }
 
     /// True while a motion is under way, or may begin without another request.
@@ -182,7 +216,12 @@ impl Inner {
         seen.moving || self.mover.is_to_start() || in_control && !seen.is_planned
     }
 
-    fn move_by(&mut self, motion: Motion, seen: &Seen, port: &mut dyn Port) -> Result<(), Refusal> {
+    fn move_by(
+        &mut self,
+        motion: Motion,
+        seen: &Seen,
+        port: &mut dyn Port,
+    ) -> Result<Passed, Refusal> {
         if seen.is_planned {
             return self.mover.order(motion, seen, port);
         }
@@ -193,30 +232,15 @@ impl Inner {
             State::Disabled | State::Enabling => Refusal::NotEnabled,
         })
     }
+}
 
-    fn set(
-        &mut self,
-        name: &str,
-        value: f64,
-        seen: &Seen,
-        port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
-        if seen.enabled || !matches!(seen.state, State::Disabled | State::Fault) {
-            return Err(Refusal::AxisOn);
-        }
-        let which = Which::Named(name);
-        let before = write(&mut self.params, which, value)?;
-        let taken = self.params.validate();
-        let taken = taken.map_err(|_| Refusal::Inconsistent);
-        let taken = taken.and_then(|config| {
-            port.reconfigure(&config)?;
-            let feed = self.params.motion.max_feed_mm_per_min;
-            self.mover.reconfigure(&config, feed);
-            Ok(())
-        });
-        if taken.is_err() {
-            let _ = write(&mut self.params, which, before);
-        }
-        taken
+/// The source of setpoints of that number.
+const fn source_of(number: u8) -> Result<Source, Refusal> {
+    match number {
+        0 => Ok(Source::Trajectory),
+        1 => Ok(Source::StepDir),
+        2 => Ok(Source::Analog),
+        3 => Ok(Source::Gearing),
+        _ => Err(Refusal::NotSupported),
     }
 }

@@ -7,17 +7,20 @@
 mod answer;
 mod motion;
 mod port;
+mod settings;
 
-pub use port::{Order, Port, Seen};
+pub use port::{Order, Passed, Port, Seen, Ticket};
 
 use super::decoder::{Decoder, Dropped};
+use super::experiment::Draft;
 use super::frame::{Channel, Frame, FrameBuffer, Header};
 use super::lease::Lease;
 use super::refusal::Refusal;
 use super::reply::Reply;
 use super::request::Request;
 use super::session::{Arrival, Session};
-use crate::params::{AxisParams, ParamError};
+use crate::params::ParamError;
+use crate::settings::Settings;
 use crate::telemetry::Record;
 use motion::Mover;
 
@@ -42,6 +45,8 @@ pub struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
     Nothing,
+    /// It waits for the axis.
+    Waits(Header, Ticket),
     Outcome(Result<(), Refusal>),
 }
 
@@ -57,7 +62,13 @@ pub struct Service {
 struct Inner {
     identity: Identity,
     tick_hz: u32,
-    params: AxisParams,
+    settings: Settings,
+    /// The copy of an edit.
+    edit: Option<Settings>,
+    /// Control rate and edge timer that the axis was switched on with, Hz.
+    rates: [f64; 2],
+    /// The program of an experiment, as far as it was told.
+    draft: Draft,
     session: Session,
     lease: Lease,
     mover: Mover,
@@ -68,25 +79,32 @@ struct Inner {
     every: u16,
     until_record: u16,
     next_record: u16,
+    next_samples: u16,
     records_lost: u32,
     buffer: FrameBuffer,
 }
 
 impl Service {
-    /// The service of an axis with `params`, which its configuration was made of.
+    /// The service of an axis with `settings`, which its configuration was made of.
     ///
     /// # Errors
     /// [`ParamError`] if no configuration can be made of them.
-    pub fn new(identity: Identity, params: &AxisParams) -> Result<Self, ParamError> {
-        let config = params.validate()?;
+    pub fn new(identity: Identity, settings: &Settings) -> Result<Self, ParamError> {
+        let mut settings = *settings;
+        let config = settings.validate()?;
+        let params = &settings.axis;
         let tick_hz = libm::round(params.tick_hz) as u32;
         let feed = params.motion.max_feed_mm_per_min;
+        let rates = [params.tick_hz, params.timer_hz];
         Ok(Self {
             decoder: Decoder::new(),
             inner: Inner {
                 identity,
                 tick_hz,
-                params: *params,
+                settings,
+                edit: None,
+                rates,
+                draft: Draft::default(),
                 session: Session::default(),
                 lease: Lease::new(tick_hz),
                 mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
@@ -95,6 +113,7 @@ impl Service {
                 every: 0,
                 until_record: 0,
                 next_record: 0,
+                next_samples: 0,
                 records_lost: 0,
                 buffer: FrameBuffer::default(),
             },
@@ -116,6 +135,31 @@ impl Service {
     /// Looks at the axis: a lease that has lapsed disables it, which stops it in its own loop.
     pub fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.inner.poll(seen, port);
+    }
+
+    /// The settings in force.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.inner.settings
+    }
+
+    /// What came of an order that was on its way. The request that it was for is answered by a frame to `send`.
+    pub fn settle(
+        &mut self,
+        ticket: Ticket,
+        outcome: Result<(), Refusal>,
+        seen: &Seen,
+        send: &mut dyn FnMut(&[u8]),
+    ) {
+        let inner = &mut self.inner;
+        inner.mover.settle(ticket, outcome);
+        if let Done::Waits(header, waits) = inner.last_done
+            && waits == ticket
+        {
+            inner.last_done = Done::Outcome(outcome);
+            inner.answer(header, &Inner::reply(seen, outcome));
+            send(inner.buffer.bytes());
+        }
     }
 
     /// Takes bytes that came, any number of them. Each request among them is answered by a frame to `send`.
@@ -141,7 +185,18 @@ impl Service {
         self.inner.record(record)
     }
 
-    /// The frame of the last record found no room on its way out.
+    /// The frame of a body of samples.
+    pub fn samples(&mut self, body: &[u8]) -> &[u8] {
+        self.inner.samples(body)
+    }
+
+    /// The session that is open; 0 for none.
+    #[must_use]
+    pub const fn session(&self) -> u32 {
+        self.inner.session.number()
+    }
+
+    /// The frame of the last record, or of samples, found no room on its way out.
     pub const fn note_record_lost(&mut self) {
         self.inner.records_lost = self.inner.records_lost.saturating_add(1);
     }
@@ -194,8 +249,10 @@ impl Inner {
                 dropped.count_late();
                 match (self.last_done, request) {
                     (Done::Outcome(outcome), _) => outcome,
+                    // Its answer is still to come.
+                    (Done::Waits(..), _) => return,
                     (Done::Nothing, Some(request)) if request.is_query() => {
-                        return self.query(header, &request, dropped, seen);
+                        return self.query(header, &request, dropped, seen, port);
                     }
                     _ => Err(Refusal::Late),
                 }
@@ -203,9 +260,15 @@ impl Inner {
             Arrival::Fresh => match request {
                 Some(request) if request.is_query() => {
                     self.last_done = Done::Nothing;
-                    return self.query(header, &request, dropped, seen);
+                    return self.query(header, &request, dropped, seen, port);
                 }
-                Some(request) => self.carry_out(&request, seen, port),
+                Some(request) => match self.carry_out(&request, seen, port) {
+                    Ok(Passed::OnItsWay(ticket)) => {
+                        self.last_done = Done::Waits(header, ticket);
+                        return;
+                    }
+                    done => self.remember(done.map(|_| ())),
+                },
                 None => {
                     dropped.count_unknown();
                     self.remember(Err(Refusal::NotUnderstood))
@@ -219,6 +282,8 @@ impl Inner {
         self.last_done = Done::Nothing;
         self.every = 0;
         self.next_record = 0;
+        self.next_samples = 0;
+        self.edit = None;
     }
 
     fn record(&mut self, record: &Record) -> Option<&[u8]> {
@@ -237,6 +302,16 @@ impl Inner {
         };
         self.next_record = self.next_record.wrapping_add(1);
         self.buffer.raw(header, &record.to_bytes()).ok()
+    }
+
+    fn samples(&mut self, body: &[u8]) -> &[u8] {
+        let header = Header {
+            channel: Channel::Samples,
+            session: self.session.number(),
+            sequence: self.next_samples,
+        };
+        self.next_samples = self.next_samples.wrapping_add(1);
+        self.buffer.raw(header, body).unwrap_or_default()
     }
 
     fn answer(&mut self, header: Header, reply: &Reply<'_>) {

@@ -1,9 +1,10 @@
 //! Orders of motion: from nanometres and µm/min to plans that start a few ticks ahead.
 
-use super::port::{Order, Port, Seen};
+use super::port::{Order, Passed, Port, Seen, Ticket};
 use crate::axis;
 use crate::params::AxisConfig;
 use crate::protocol::refusal::Refusal;
+use crate::protocol::request::Request;
 use crate::setpoint::planner::{Planner, PlannerError, Timed};
 use crate::units::{AxisScale, Position, Velocity};
 
@@ -21,6 +22,26 @@ pub(super) enum Motion {
     Resume,
     Override { percent: u16 },
     Stop,
+}
+
+impl Motion {
+    /// What a request asks for, if it asks for motion by plans.
+    pub(super) const fn of(request: &Request<'_>) -> Option<Self> {
+        Some(match *request {
+            Request::Move {
+                target_nm,
+                feed_um_per_min: feed_um,
+            } => Self::Move { target_nm, feed_um },
+            Request::Jog {
+                feed_um_per_min: feed_um,
+            } => Self::Jog { feed_um },
+            Request::Hold {} => Self::Hold,
+            Request::Resume {} => Self::Resume,
+            Request::Override { percent } => Self::Override { percent },
+            Request::Stop {} => Self::Stop,
+            _ => return None,
+        })
+    }
 }
 
 /// A stop that waits until the plan before it has begun: an axis keeps one waiting plan.
@@ -44,6 +65,8 @@ pub(super) struct Mover {
     dropped_plans: u32,
     /// Start of the plan that the axis has not begun.
     start: Option<u32>,
+    /// The same plan on its way to the axis.
+    on_its_way: Option<Ticket>,
     waiting: Option<Waiting>,
 }
 
@@ -58,6 +81,7 @@ impl Mover {
             is_stale: true,
             dropped_plans: 0,
             start: None,
+            on_its_way: None,
             waiting: None,
         }
     }
@@ -121,25 +145,41 @@ impl Mover {
         motion: Motion,
         seen: &Seen,
         port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
+    ) -> Result<Passed, Refusal> {
         if self.start.is_some() {
             self.waiting = match motion {
                 Motion::Stop => Some(Waiting::Stop),
                 Motion::Hold => Some(self.waiting.unwrap_or(Waiting::Hold)),
                 _ => return Err(Refusal::Busy),
             };
-            return Ok(());
+            return Ok(Passed::Taken);
         }
         self.catch_up(seen)?;
         let start = seen.tick.wrapping_add(self.lead);
         let Some(Timed { plan, start }) = self.plan(motion, seen, start)? else {
-            return Ok(());
+            return Ok(Passed::Taken);
         };
         let queue = axis::Request::Queue { plan, start };
-        port.order(&Order::Axis(queue))
+        let passed = port
+            .order(&Order::Axis(queue))
             .inspect_err(|_| self.planner.withdraw())?;
         self.start = Some(start);
-        Ok(())
+        self.on_its_way = match passed {
+            Passed::Taken => None,
+            Passed::OnItsWay(ticket) => Some(ticket),
+        };
+        Ok(passed)
+    }
+
+    /// What came of a plan that was on its way.
+    pub(super) fn settle(&mut self, ticket: Ticket, outcome: Result<(), Refusal>) {
+        if self.on_its_way == Some(ticket) {
+            self.on_its_way = None;
+            if outcome.is_err() {
+                self.planner.withdraw();
+                self.start = None;
+            }
+        }
     }
 
     /// Begins anew where something else has moved the axis.

@@ -1,11 +1,14 @@
 //! What the service sees of the axis, and how it asks for something.
 
-use crate::axis::{Axis, Request};
+use crate::axis::{self, Axis};
 use crate::params::AxisConfig;
 use crate::protocol::refusal::Refusal;
+use crate::protocol::reply::Reply;
+use crate::protocol::request::Request;
 use crate::setpoint::sources::Source;
 use crate::setpoint::thread::ThreadPhase;
 use crate::setpoint::travel::TravelLimits;
+use crate::settings::Settings;
 use crate::supervisor::{Fault, State};
 use crate::units::{Position, Velocity};
 
@@ -64,7 +67,8 @@ impl Seen {
             is_planned: in_control
                 && !axis.homing().is_active()
                 && axis.source() == Source::Trajectory
-                && axis.thread_phase() == ThreadPhase::Idle,
+                && axis.thread_phase() == ThreadPhase::Idle
+                && axis.experiment().is_none(),
             dropped_plans: axis.dropped_plans(),
         }
     }
@@ -80,20 +84,48 @@ pub enum Order {
     /// The axis is to be under control, or not.
     Enable(bool),
     /// A request to the axis.
-    Axis(Request),
+    Axis(axis::Request),
 }
 
-/// The way to the axis.
+/// Tells an order on its way from others; wraps.
+pub type Ticket = u16;
+
+/// How far an order is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passed {
+    /// The axis took it.
+    Taken,
+    /// It is on its way; what comes of it is told to [`Service::settle`](super::Service::settle).
+    OnItsWay(Ticket),
+}
+
+/// The way to the axis, and to what its board has besides.
 pub trait Port {
     /// Passes an order on, to be seen by the next tick.
     ///
     /// # Errors
     /// A [`Refusal`], where the axis refuses it at once or there is no way on; nothing comes of it then.
-    fn order(&mut self, order: &Order) -> Result<(), Refusal>;
+    fn order(&mut self, order: &Order) -> Result<Passed, Refusal>;
 
     /// Gives the axis, which is off, a new configuration.
     ///
     /// # Errors
     /// A [`Refusal`]; the one before stays.
-    fn reconfigure(&mut self, config: &AxisConfig) -> Result<(), Refusal>;
+    fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal>;
+
+    /// Does what is not the axis's: store, work memory, scope, learning, counters. Who asks may do so, and the axis is off
+    /// where that is asked for; `settings` are those in force. A reply other than an acknowledgement goes to `say`, of
+    /// requests that only ask.
+    ///
+    /// # Errors
+    /// A [`Refusal`]: without a board, for everything.
+    fn serve(
+        &mut self,
+        request: &Request<'_>,
+        settings: &Settings,
+        say: &mut dyn FnMut(&Reply<'_>),
+    ) -> Result<(), Refusal> {
+        let _ = (request, settings, say);
+        Err(Refusal::NotSupported)
+    }
 }
