@@ -22,7 +22,7 @@
 //! Beside the path, [`homing`] finds where the axis counts from, [`identification`] what its drive does, and
 //! [`tachogenerator`] checks the encoder by a second sensor. Outside the tick, [`setpoint::planner`] plans moves,
 //! [`calibration`] learns where the encoder's edges really lie, [`tuning`] finds the loop's parameters, and [`protocol`]
-//! lets a person at a laptop ask for all of it.
+//! lets a person at a laptop ask for all of it. Right behind the step, [`scope`] records what that person wants to see.
 //!
 //! The core is `no_std`, allocates nothing, uses no floating point in the tick and does not panic:
 //! counters wrap by type and are unwrapped in one place, everything else saturates or is bounded by
@@ -62,6 +62,7 @@ pub mod parameter_table;
 pub mod params;
 pub mod protocol;
 pub mod quadrature;
+pub mod scope;
 pub mod setpoint;
 pub mod settings;
 pub mod supervisor;

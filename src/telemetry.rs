@@ -44,15 +44,6 @@ impl Record {
     /// The record of a tick.
     #[must_use]
     pub fn new(outputs: &Outputs) -> Self {
-        let limits = outputs.limits;
-        let flags = u32::from(outputs.enabled)
-            | u32::from(limits.high) << 1
-            | u32::from(limits.low) << 2
-            | u32::from(limits.slew) << 3
-            | u32::from(outputs.moving) << 4
-            | u32::from(outputs.brake_released) << 5
-            | u32::from(outputs.state as u8) << 8
-            | u32::from(outputs.fault.map_or(0, |fault| fault as u8)) << 16;
         Self {
             tick: outputs.tick,
             count: outputs.count as u32,
@@ -64,7 +55,7 @@ impl Record {
             setpoint_acceleration: outputs.setpoint.acceleration.to_bits(),
             following_error: outputs.following_error.to_bits(),
             command: outputs.command.to_bits(),
-            flags,
+            flags: flags(outputs),
         }
     }
 
@@ -110,6 +101,21 @@ impl Record {
         put(&mut rest, &self.flags.to_le_bytes());
         bytes
     }
+}
+
+/// [`Record::flags`] of a tick.
+#[must_use]
+#[inline]
+pub fn flags(outputs: &Outputs) -> u32 {
+    let limits = outputs.limits;
+    u32::from(outputs.enabled)
+        | u32::from(limits.high) << 1
+        | u32::from(limits.low) << 2
+        | u32::from(limits.slew) << 3
+        | u32::from(outputs.moving) << 4
+        | u32::from(outputs.brake_released) << 5
+        | u32::from(outputs.state as u8) << 8
+        | u32::from(outputs.fault.map_or(0, |fault| fault as u8)) << 16
 }
 
 /// Writes `field` at the front of `rest` and moves on.
