@@ -11,6 +11,14 @@ pub use cortex_m_rt::interrupt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Interrupt {
+    /// UART 0 has a byte.
+    UART0RX = 0,
+    /// UART 0 has room for a byte.
+    UART0TX = 1,
+    /// UART 1 has a byte.
+    UART1RX = 2,
+    /// UART 1 has room for a byte.
+    UART1TX = 3,
     /// CMSDK timer 0.
     TIMER0 = 8,
     /// CMSDK timer 1.
@@ -32,6 +40,10 @@ unsafe impl InterruptNumber for Interrupt {
 // name and signature.
 unsafe extern "C" {
     fn DefaultHandler();
+    fn UART0RX();
+    fn UART0TX();
+    fn UART1RX();
+    fn UART1TX();
     fn TIMER0();
     fn TIMER1();
     fn DUALTIMER();
@@ -47,6 +59,10 @@ const LINES: usize = 32;
 #[unsafe(no_mangle)]
 pub static __INTERRUPTS: [unsafe extern "C" fn(); LINES] = {
     let mut table: [unsafe extern "C" fn(); LINES] = [DefaultHandler; LINES];
+    table[Interrupt::UART0RX as usize] = UART0RX;
+    table[Interrupt::UART0TX as usize] = UART0TX;
+    table[Interrupt::UART1RX as usize] = UART1RX;
+    table[Interrupt::UART1TX as usize] = UART1TX;
     table[Interrupt::TIMER0 as usize] = TIMER0;
     table[Interrupt::TIMER1 as usize] = TIMER1;
     table[Interrupt::DUALTIMER as usize] = DUALTIMER;

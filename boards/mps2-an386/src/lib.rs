@@ -1,16 +1,21 @@
-//! The board that QEMU models as `mps2-an386`: a Cortex-M4F at 25 MHz with CMSDK timers.
+//! The board that QEMU models as `mps2-an386`: a Cortex-M4F at 25 MHz with CMSDK timers and UARTs.
 //!
 //! It has no encoder inputs and no drive: the machine is simulated in the guest, by an interrupt of
 //! its own. All `unsafe` of the firmware is in this crate, each with its reason.
 #![no_std]
 
 mod exit;
+pub mod flash;
 pub mod handoff;
 pub mod instructions;
 pub mod interrupts;
 pub mod isr_cell;
+pub mod lockstep;
+mod registers;
+pub mod simulated;
 pub mod time_driver;
 pub mod timer;
+pub mod uart;
 
 pub use exit::{arguments, exit_failure, exit_success};
 

@@ -1,32 +1,14 @@
 //! The timers of the board: registers, and nothing clever.
 
-use core::ptr;
-
-/// One block of 32-bit registers at a fixed address.
-struct Registers(usize);
-
-impl Registers {
-    fn read(&self, offset: usize) -> u32 {
-        let address = ptr::with_exposed_provenance::<u32>(self.0 + offset);
-        // SAFETY: `self.0` is the address of a timer block (the constants below) and the offsets are
-        // its registers, aligned words. Reading has no side effect.
-        unsafe { address.read_volatile() }
-    }
-
-    fn write(&self, offset: usize, value: u32) {
-        let address = ptr::with_exposed_provenance_mut::<u32>(self.0 + offset);
-        // SAFETY: as for `read`; the registers only steer the timer, they give it no access to memory.
-        unsafe { address.write_volatile(value) }
-    }
-}
+use crate::registers::Registers;
 
 /// A CMSDK timer: 32 bits, counts down at [`crate::CLOCK_HZ`], reloads, interrupts.
 pub struct Timer(Registers);
 
 /// CMSDK timer 0, line `TIMER0`.
-pub static TIMER0: Timer = Timer(Registers(0x4000_0000));
+pub static TIMER0: Timer = Timer(Registers::new(0x4000_0000));
 /// CMSDK timer 1, line `TIMER1`.
-pub static TIMER1: Timer = Timer(Registers(0x4000_1000));
+pub static TIMER1: Timer = Timer(Registers::new(0x4000_1000));
 
 impl Timer {
     const CTRL: usize = 0x0;
@@ -71,9 +53,9 @@ impl Timer {
 pub struct HalfTimer(Registers);
 
 /// First half of the dual timer.
-pub static DUAL_FIRST: HalfTimer = HalfTimer(Registers(0x4000_2000));
+pub static DUAL_FIRST: HalfTimer = HalfTimer(Registers::new(0x4000_2000));
 /// Second half of the dual timer.
-pub static DUAL_SECOND: HalfTimer = HalfTimer(Registers(0x4000_2020));
+pub static DUAL_SECOND: HalfTimer = HalfTimer(Registers::new(0x4000_2020));
 
 impl HalfTimer {
     const LOAD: usize = 0x00;

@@ -2,6 +2,7 @@
 
 use core::sync::atomic::Ordering;
 
+use board_mps2_an386::simulated::{COUNTERS, MACHINE, READY, REFUSED};
 use board_mps2_an386::{exit_failure, exit_success};
 use embassy_time::{Instant, Timer};
 use heapless::spsc::{Consumer, Producer};
@@ -11,8 +12,6 @@ use leadscrew_app::axis_control::{Request, What};
 use leadscrew_app::telemetry::{self, Plan, Sink};
 use leadscrew_app::tick::Counts;
 use leadscrew_hal_mock::scenario::{Desk, Order, ScenarioError, Script};
-
-use crate::{COUNTERS, MACHINE, READY, REFUSED};
 
 /// The person at the panel: enables the axis and hands over each move once the one before has begun.
 #[embassy_executor::task]

@@ -1,20 +1,14 @@
-//! The machine in the guest: what its interrupt does, and what the run is made of.
+//! The machine in the guest, and what its interrupt does.
 
-use board_mps2_an386::handoff::{Giver, Taker};
-use leadscrew::axis::{Axis, Inputs};
-use leadscrew::estimator::EstimatorConfig;
+use leadscrew::axis::Inputs;
 use leadscrew::hal::Encoder;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::Inlet;
-use leadscrew_app::options::Options;
-use leadscrew_hal_mock::machine::{Machine, MachineParams};
-use leadscrew_hal_mock::scenario::{
-    Desk, Fate, MoveAndBack, Operator, Scenario, ScenarioError, Script, Setup, World,
-};
+use leadscrew_hal_mock::machine::Machine;
+use leadscrew_hal_mock::scenario::{Fate, World};
 use leadscrew_hal_mock::trace::TraceDigest;
 
-/// Seed of the encoder's errors and of all noise of the standard move.
-const SEED: u64 = 1;
+use crate::handoff::{Giver, Taker};
 
 /// What the axis moves.
 #[expect(
@@ -34,62 +28,6 @@ impl Inlet for Plant {
             Self::Machine(machine) => Inputs::of(machine.capture(), enable),
             Self::World(world) => world.inputs(enable),
         }
-    }
-}
-
-/// Who asks what of the axis.
-pub enum Panel {
-    /// The moves of a script.
-    Script(Script),
-    /// The timeline of a scenario.
-    Desk(Desk<'static>),
-}
-
-/// What a run is made of.
-pub struct Job {
-    pub plant: Plant,
-    pub axis: Axis<'static>,
-    pub panel: Panel,
-    /// What is done to the plant.
-    pub fate: Fate<'static>,
-    pub tick_hz: f64,
-    pub ticks: u32,
-}
-
-impl Job {
-    /// The standard move on the reference machine, with the estimator asked for in the loop.
-    pub fn standard_move(options: &Options) -> Result<Self, ScenarioError> {
-        let tick_hz = f64::from(options.tick_hz);
-        let scenario = MoveAndBack::standard(tick_hz);
-        let estimator = EstimatorConfig::by_name(options.estimator)?.expect("it is in the list");
-        let setup = Setup::new(&scenario, &MachineParams::z_16k20f3(), estimator, SEED)?;
-        Ok(Self {
-            plant: Plant::Machine(setup.machine),
-            axis: setup.axis,
-            ticks: setup.script.ticks,
-            panel: Panel::Script(setup.script),
-            fate: Fate::new(&[], tick_hz),
-            tick_hz,
-        })
-    }
-
-    /// A scenario that is built in.
-    pub fn scenario(scenario: &'static Scenario<'static>) -> Result<Self, ScenarioError> {
-        let Scenario {
-            tick_hz, timeline, ..
-        } = *scenario;
-        let plant = scenario.plant();
-        let params = scenario.axis_params(&plant.machine)?;
-        let config = params.validate()?;
-        let operator = Operator::new(&params, &config)?;
-        Ok(Self {
-            plant: Plant::World(World::new(&plant, scenario)?),
-            axis: Axis::new(config),
-            panel: Panel::Desk(Desk::new(operator, timeline, tick_hz)),
-            fate: Fate::new(timeline, tick_hz),
-            tick_hz,
-            ticks: scenario.ticks()?,
-        })
     }
 }
 
