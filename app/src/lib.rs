@@ -15,6 +15,7 @@
 #![forbid(unsafe_code)]
 
 pub mod axis_control;
+pub mod modbus;
 pub mod options;
 pub mod store;
 pub mod telemetry;
