@@ -15,8 +15,12 @@
 #![forbid(unsafe_code)]
 
 pub mod axis_control;
+pub mod captures;
+pub mod link;
 pub mod modbus;
 pub mod options;
+pub mod queues;
+pub mod report;
 pub mod store;
 pub mod telemetry;
 pub mod tick;

@@ -172,9 +172,14 @@ impl Combination {
         }
     }
 
+    /// Runs so far.
+    pub const fn runs(&self) -> usize {
+        self.count
+    }
+
     /// The map that the runs give.
     pub fn finish<'w>(
-        self,
+        &self,
         mean: &'w mut [i16],
         requirements: &Requirements,
     ) -> Result<Learned<'w>, Refusal> {

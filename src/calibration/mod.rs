@@ -102,6 +102,22 @@ impl<'w> Learner<'w> {
     /// have an entry for each.
     pub fn new(edges_per_revolution: u32, timer_hz: f64, work: Work<'w>) -> Result<Self, Refusal> {
         let edges = edges_per_revolution;
+        Self::check(edges, &work)?;
+        Ok(Self {
+            edges,
+            timer_hz,
+            sums: work.sums,
+            mean: work.mean,
+            run: None,
+            combination: Combination::new(edges),
+        })
+    }
+
+    /// Passes edges and work memory that [`Self::new`] takes.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn check(edges: u32, work: &Work<'_>) -> Result<(), Refusal> {
         if !(MIN_EDGES..=MAX_EDGES).contains(&edges) || !edges.is_multiple_of(4) {
             return Err(Refusal::EdgesPerRevolution {
                 edges,
@@ -110,19 +126,13 @@ impl<'w> Learner<'w> {
             });
         }
         let given = work.sums.len().min(work.mean.len());
-        let too_small = Refusal::WorkMemory {
-            given,
-            needed: edges,
-        };
-        let length = edges as usize;
-        Ok(Self {
-            edges,
-            timer_hz,
-            sums: work.sums.get_mut(..length).ok_or(too_small)?,
-            mean: work.mean.get_mut(..length).ok_or(too_small)?,
-            run: None,
-            combination: Combination::new(edges),
-        })
+        if given < edges as usize {
+            return Err(Refusal::WorkMemory {
+                given,
+                needed: edges,
+            });
+        }
+        Ok(())
     }
 
     /// Begins a run; one under way is dropped.
@@ -132,7 +142,7 @@ impl<'w> Learner<'w> {
     pub fn begin_run(&mut self, plan: RunPlan) -> Result<(), Refusal> {
         plan.check()?;
         self.combination.check_room()?;
-        self.sums.fill(0);
+        sums_of(self.sums, self.edges).fill(0);
         self.run = Some(Run::new(plan, self.edges, self.timer_hz));
         Ok(())
     }
@@ -143,7 +153,7 @@ impl<'w> Learner<'w> {
     /// [`Refusal`] of data that do not suffice. The run is dropped, runs before are kept.
     pub fn feed(&mut self, observation: &Observation<'_>) -> Result<Progress, Refusal> {
         let run = self.run.as_mut().ok_or(Refusal::NoRun)?;
-        let fed = run.feed(observation, self.sums);
+        let fed = run.feed(observation, sums_of(self.sums, self.edges));
         if fed.is_err() {
             self.run = None;
         }
@@ -156,7 +166,9 @@ impl<'w> Learner<'w> {
     /// [`Refusal`] of a run that is not complete, or does not go with those before. It is dropped, they are kept.
     pub fn end_run(&mut self) -> Result<RunSummary, Refusal> {
         let run = self.run.take().ok_or(Refusal::NoRun)?;
-        self.combination.add(&run, self.sums, self.mean)
+        let sums = sums_of(self.sums, self.edges);
+        self.combination
+            .add(&run, sums, mean_of(self.mean, self.edges))
     }
 
     /// The map that the runs give.
@@ -164,6 +176,50 @@ impl<'w> Learner<'w> {
     /// # Errors
     /// [`Refusal`] if there is no run or `requirements` are not met.
     pub fn finish(self, requirements: &Requirements) -> Result<Learned<'w>, Refusal> {
-        self.combination.finish(self.mean, requirements)
+        let mean = mean_of(self.mean, self.edges);
+        self.combination.finish(mean, requirements)
     }
+
+    /// The same for a learner whose memory is wanted back: the map is to be encoded before it is used for anything
+    /// else. After it the runs are forgotten, unless it is refused.
+    ///
+    /// # Errors
+    /// As of [`Self::finish`].
+    pub fn conclude(&mut self, requirements: &Requirements) -> Result<Learned<'_>, Refusal> {
+        let mean = mean_of(self.mean, self.edges);
+        let learned = self.combination.finish(mean, requirements)?;
+        self.combination = Combination::new(self.edges);
+        Ok(learned)
+    }
+
+    /// Complete runs so far.
+    #[must_use]
+    pub const fn runs(&self) -> usize {
+        self.combination.runs()
+    }
+
+    /// How far the run under way is; none between runs.
+    #[must_use]
+    pub fn progress(&self) -> Option<Progress> {
+        self.run.as_ref().map(Run::progress)
+    }
+
+    /// Gives the memory back.
+    #[must_use]
+    pub fn into_work(self) -> Work<'w> {
+        Work {
+            sums: self.sums,
+            mean: self.mean,
+        }
+    }
+}
+
+/// As many sums as there are edges; a learner has room for them.
+fn sums_of(sums: &mut [i32], edges: u32) -> &mut [i32] {
+    sums.get_mut(..edges as usize).unwrap_or_default()
+}
+
+/// As many means.
+fn mean_of(mean: &mut [i16], edges: u32) -> &mut [i16] {
+    mean.get_mut(..edges as usize).unwrap_or_default()
 }

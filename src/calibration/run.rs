@@ -65,7 +65,8 @@ impl Run {
         Ok(self.progress())
     }
 
-    fn progress(&self) -> Progress {
+    /// How far it is.
+    pub fn progress(&self) -> Progress {
         match &self.stage {
             Stage::Seeking => Progress::SeekingIndex,
             Stage::Timing(_) => Progress::MeasuringSpeed,

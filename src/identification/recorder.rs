@@ -89,14 +89,16 @@ impl<'w> Recorder<'w> {
 
     /// Takes what a tick of an experiment saw.
     pub fn feed(&mut self, experiment: &Experiment) {
-        let position = experiment.position();
+        self.take(experiment.position(), experiment.in_force());
+    }
+
+    /// The same by its position (1/16 d) and the command under which the axis moved to it.
+    pub fn take(&mut self, position: i64, in_force: Command) {
         let Some(reached) = self.reached else {
             self.reached = Some(position);
             return;
         };
-        self.sum = self
-            .sum
-            .wrapping_add(i64::from(experiment.in_force().to_bits()));
+        self.sum = self.sum.wrapping_add(i64::from(in_force.to_bits()));
         self.ticks = self.ticks.wrapping_add(1);
         if self.ticks < self.decimation {
             return;
@@ -122,6 +124,29 @@ impl<'w> Recorder<'w> {
             }
             None => self.is_full = true,
         }
+    }
+
+    /// The same as words: the travel in 1/16 d in the low half, the mean command in 2⁻¹⁵ in the high one.
+    #[must_use]
+    pub fn words(&self) -> &[i32] {
+        self.memory.get(..self.length).unwrap_or_default()
+    }
+
+    /// Puts records that were made elsewhere, of `decimation` ticks, in place of its own; those that find no room are left
+    /// out, and it is full.
+    pub fn load(&mut self, words: &[i32], decimation: u32) {
+        self.clear(decimation);
+        for (place, word) in self.memory.iter_mut().zip(words) {
+            *place = *word;
+        }
+        self.length = words.len().min(self.memory.len());
+        self.is_full = words.len() > self.memory.len();
+    }
+
+    /// Gives the memory back.
+    #[must_use]
+    pub fn into_memory(self) -> &'w mut [i32] {
+        self.memory
     }
 
     /// The records, in order.

@@ -17,6 +17,12 @@ pub const MAX_FRAME: usize = cobs::max_encoding_length(MAX_CONTENT) + 1;
 /// The checksum of the encoder map too; a table would cost more flash than it is worth.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
+/// The checksum that frames end with.
+#[must_use]
+pub const fn checksum(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}
+
 /// What a body is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]

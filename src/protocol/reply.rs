@@ -243,22 +243,24 @@ messages! {
         }
         /// How the scope stands.
         Scope = 13 {
-            /// 0 not armed, 1 fills before the trigger, 2 waits for it, 3 fills behind it, 4 complete.
+            /// 0 not armed, 1 waits for its trigger, 2 triggered, 3 complete, 4 ended before it was.
             phase: u8,
             /// Numbers of the signals.
             signals: &'a [u8],
             /// Ticks a sample.
             every: u16,
-            /// Samples so far.
+            /// Samples that there are to be read; 0 before the end.
             samples: u32,
-            /// The sample at the trigger.
-            trigger: u32,
+            /// The sample at the trigger; none if it was ended before that.
+            trigger: Option<u32>,
             /// Tick of the first sample.
             tick: u32,
-            /// Ticks that it did not see.
-            missed: u32,
-            /// Whole value of each signal in the first sample, 8 bytes each, the low one first.
-            bases: &'a [u8],
+            /// Whole value of each signal in the first sample.
+            bases: [i64; crate::scope::MOST_SIGNALS],
+            /// Places where ticks were missed, or a wide signal jumped.
+            interruptions: [Option<crate::scope::Interrupted>; crate::scope::MOST_INTERRUPTIONS],
+            /// There were more of them: before the last ones time and wide signals are not known.
+            is_torn: bool,
         }
         /// Samples of the scope.
         Samples = 14 {

@@ -201,13 +201,13 @@ messages! {
             samples: u32,
             /// Samples of these before the trigger.
             before: u32,
-            /// 0 at once, 1 above the level, 2 below it, 3 rising through it, 4 falling through it, 5 either way, 6 a fault, 7
-            /// a warning, 8 a motion begins.
+            /// 0 at once, 1 only when told, 2 above the level, 3 below it, 4 rising through it, 5 falling through it, 6 either way,
+            /// 7 a fault, 8 a warning, 9 a motion begins.
             trigger: u8,
             /// Number of the signal that is compared with the level; number of the fault, 0 for any.
             source: u8,
-            /// The level, in the signal's own unit.
-            level: i32,
+            /// The level, in the bits of the signal, all of a wide one.
+            level: i64,
         }
         /// Triggers the scope now.
         TriggerScope = 41 {}
@@ -243,7 +243,7 @@ messages! {
         FinishLearning = 49 {}
         /// Asks what was learned: [`Learned`](super::reply::Reply::Learned).
         Learned = 50 {}
-        /// Takes the learned map into use, while the axis is off, and saves it.
+        /// Takes the learned map into use, while the axis is off. It is not saved yet.
         TakeMap = 51 {}
         /// Ends learning; what was learned and not taken is lost.
         EndLearning = 52 {}
@@ -252,6 +252,8 @@ messages! {
             /// Number of the [`Source`](crate::setpoint::sources::Source): 0 planned moves.
             source: u8,
         }
+        /// Saves the map that was taken into use, while the axis is off.
+        SaveMap = 54 {}
     }
 }
 

@@ -4,7 +4,7 @@
 pub const MOST_INTERRUPTIONS: usize = 4;
 
 /// Why a sample does not follow the one before evenly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Interruption {
     /// Ticks were missed: the sample lies so many more behind the one before.
     Missed {

@@ -6,7 +6,7 @@ use super::unwrap::nearest;
 use super::{MOST_SIGNALS, Scope, Setup, State};
 
 /// An interruption of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Interrupted {
     /// It lies between this sample and the one before.
     pub sample: u32,

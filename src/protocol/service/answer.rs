@@ -180,6 +180,7 @@ impl Inner {
             | Request::SaveBytes { .. }
             | Request::Erase { .. }
             | Request::TakeMap {}
+            | Request::SaveMap {}
             | Request::Restart {} => {
                 Self::check_off(seen)?;
                 self.serve(request, port)

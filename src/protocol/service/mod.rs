@@ -15,6 +15,7 @@ use super::decoder::{Decoder, Dropped};
 use super::experiment::Draft;
 use super::frame::{Channel, Frame, FrameBuffer, Header};
 use super::lease::Lease;
+use super::parameters::{Which, parameter};
 use super::refusal::Refusal;
 use super::reply::Reply;
 use super::request::Request;
@@ -135,6 +136,40 @@ impl Service {
     /// Looks at the axis: a lease that has lapsed disables it, which stops it in its own loop.
     pub fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.inner.poll(seen, port);
+    }
+
+    /// Feed override, %.
+    #[must_use]
+    pub const fn percent(&self) -> u16 {
+        self.inner.mover.percent()
+    }
+
+    /// True while a feed hold is on.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        self.inner.mover.is_held()
+    }
+
+    /// The parameter at a place of the list.
+    ///
+    /// # Errors
+    /// [`Refusal::UnknownParameter`]
+    pub fn parameter(&mut self, index: u16) -> Result<Reply<'static>, Refusal> {
+        parameter(&mut self.inner.settings, Which::At(index))
+    }
+
+    /// Sets numbers from place `first` of the list on, all of them or none, for another line than this one.
+    ///
+    /// # Errors
+    /// As of [`Request::SetParameter`]; nothing is changed then.
+    pub fn set_numbers(
+        &mut self,
+        first: u16,
+        values: &[f64],
+        seen: &Seen,
+        port: &mut dyn Port,
+    ) -> Result<(), Refusal> {
+        self.inner.set_numbers(first, values, seen, port)
     }
 
     /// The settings in force.

@@ -31,6 +31,8 @@ pub struct Seen {
     pub commanded: Position,
     /// Where it is for its users, d from the origin.
     pub reported: Position,
+    /// Count of the encoder without wrap.
+    pub count: i64,
     /// How fast it is, d/tick.
     pub velocity: Velocity,
     /// Setpoint less position, Q15.16 d.
@@ -60,6 +62,7 @@ impl Seen {
             warnings: outputs.warnings.bits(),
             commanded: axis.commanded().position,
             reported: outputs.reported,
+            count: outputs.count,
             velocity: outputs.estimate.velocity,
             following_error: outputs.following_error.to_bits(),
             origin: axis.homing().origin(),

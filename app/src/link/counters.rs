@@ -1,0 +1,65 @@
+//! What the axis counted, and its fault, as the link tells of them.
+
+use embedded_storage::nor_flash::NorFlash;
+use leadscrew::protocol::reply::Reply;
+use leadscrew::supervisor::FirstFault;
+
+use super::bench::Bench;
+
+impl<F: NorFlash> Bench<F> {
+    pub fn fault_page(&self) -> Reply<'static> {
+        let Some(first) = &self.first_fault else {
+            return Reply::Fault {
+                tick: self.seen.tick,
+                fault: self.seen.fault.map_or(0, |fault| fault as u8),
+                state: self.seen.state as u8,
+                value: 0,
+                limit: 0,
+                later: 0,
+                position: 0,
+                velocity: 0,
+                setpoint_position: 0,
+                setpoint_velocity: 0,
+                following_error: 0,
+                command: 0,
+            };
+        };
+        let FirstFault {
+            trip,
+            tick,
+            state,
+            context,
+            later,
+        } = first;
+        Reply::Fault {
+            tick: *tick,
+            fault: trip.fault as u8,
+            state: *state as u8,
+            value: trip.value.to_bits(),
+            limit: trip.limit.to_bits(),
+            later: later.bits(),
+            position: context.position.to_bits(),
+            velocity: context.velocity.to_bits(),
+            setpoint_position: context.setpoint_position.to_bits(),
+            setpoint_velocity: context.setpoint_velocity.to_bits(),
+            following_error: context.following_error.to_bits(),
+            command: context.command.to_bits(),
+        }
+    }
+
+    pub fn counts(&self) -> Reply<'static> {
+        let counts = self.counters.read();
+        let indexes = self.report.indexes;
+        Reply::Counters {
+            ticks: counts.ticks,
+            late: counts.late,
+            overlong: counts.overlong,
+            lost_records: counts.lost_records,
+            worst_start: counts.worst_start,
+            worst_end: counts.worst_end,
+            indexes: indexes.number,
+            index_count: indexes.count,
+            index_distance: indexes.distance,
+        }
+    }
+}

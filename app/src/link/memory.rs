@@ -1,0 +1,111 @@
+//! Memory that the link works with, lent to one thing at a time.
+
+use leadscrew::calibration::{Learner, Work};
+use leadscrew::identification::recorder::Recorder;
+use leadscrew::scope::Scope;
+
+/// Words of the work memory; as many edges of an encoder can be learned.
+pub const WORDS: usize = 10_000;
+/// Bytes of the longest image of an encoder map.
+pub const MAP_BYTES: usize = 10_752;
+/// Maps between two restarts: the one that was stored, and one that is learned.
+const MAPS: usize = 2;
+
+/// A place for it, to be a static.
+pub struct Memory {
+    words: [i32; WORDS],
+    halves: [i16; WORDS],
+    maps: [[u8; MAP_BYTES]; MAPS],
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Memory {
+    /// All zero.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            words: [0; WORDS],
+            halves: [0; WORDS],
+            maps: [[0; MAP_BYTES]; MAPS],
+        }
+    }
+
+    pub(super) fn split(&'static mut self) -> (Work<'static>, MapPlaces) {
+        let work = Work {
+            sums: &mut self.words,
+            mean: &mut self.halves,
+        };
+        let mut places = MapPlaces::new();
+        for place in &mut self.maps {
+            // As many as there are.
+            let _ = places.push(place);
+        }
+        (work, places)
+    }
+}
+
+/// Places for maps that are not in use.
+pub(super) type MapPlaces = heapless::Vec<&'static mut [u8; MAP_BYTES], MAPS>;
+
+/// Who has the work memory.
+pub(super) enum Lent {
+    /// Nobody. What was recorded last may be in it.
+    Free(Work<'static>),
+    /// An experiment, or what is left of one.
+    Recorder(Recorder<'static>, &'static mut [i16]),
+    /// The scope, in the tick.
+    ScopeInTick(&'static mut [i16]),
+    /// The scope that is over.
+    Scope(Scope<'static>, &'static mut [i16]),
+    /// The learner.
+    Learner(Learner<'static>),
+    /// Moments in between.
+    Nobody,
+}
+
+impl Lent {
+    /// The memory, if whoever has it can give it up at once: a record or a scope that is over can.
+    pub fn reclaim(&mut self) -> Option<Work<'static>> {
+        match core::mem::replace(self, Self::Nobody) {
+            Self::Free(work) => Some(work),
+            Self::Recorder(recorder, mean) => Some(Work {
+                sums: recorder.into_memory(),
+                mean,
+            }),
+            Self::Scope(scope, mean) => Some(Work {
+                sums: scope.into_memory(),
+                mean,
+            }),
+            other => {
+                *self = other;
+                None
+            }
+        }
+    }
+
+    /// The bytes that the store works with; the learner has them while it learns.
+    pub fn bytes(&mut self) -> Option<&mut [u8]> {
+        let halves: &mut [i16] = match self {
+            Self::Free(Work { mean, .. })
+            | Self::Recorder(_, mean)
+            | Self::ScopeInTick(mean)
+            | Self::Scope(_, mean) => mean,
+            Self::Learner(_) | Self::Nobody => return None,
+        };
+        Some(bytemuck::cast_slice_mut(halves))
+    }
+
+    /// The words that are there to be read.
+    pub fn words(&self) -> Option<&[i32]> {
+        match self {
+            Self::Free(work) => Some(work.sums),
+            Self::Recorder(recorder, _) => Some(recorder.words()),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Thread mode's side of the link: the service with everything that a board has besides the axis.
+//!
+//! ```text
+//!             bytes ─► Service ─► requests, configurations ─► (tick)
+//!               ▲         │ │
+//!               └─ frames ┘ └─ Bench: store, work memory, scope, experiments, learning
+//!                                 ▲
+//!  (tick) ─► Report, outcomes, faults, samples, captures, scopes that are over
+//! ```
+//!
+//! Nothing here waits. A board calls [`Link::report`] for every report of a tick, in order, [`Link::poll`] when it has
+//! none left, and [`Link::receive`] with whatever bytes came; frames go out through a closure, which says whether there
+//! was room. Requests whose outcome the tick tells are answered then.
+
+mod bench;
+mod boot;
+mod counters;
+mod experiments;
+mod learning;
+mod memory;
+mod panel;
+mod scopes;
+mod storage;
+
+pub use boot::{Boot, Loaded};
+pub use memory::{MAP_BYTES, Memory, WORDS};
+
+use embedded_storage::nor_flash::NorFlash;
+use leadscrew::protocol::service::Service;
+
+use crate::report::Report;
+use bench::Bench;
+
+/// What passes a frame on; false where there was no room for it.
+pub type Send<'s> = dyn FnMut(&[u8]) -> bool + 's;
+
+/// The link of an axis.
+pub struct Link<F: NorFlash> {
+    service: Service,
+    bench: Bench<F>,
+}
+
+impl<F: NorFlash> Link<F> {
+    /// Takes the report of a tick.
+    pub fn report(&mut self, report: &Report, send: &mut Send<'_>) {
+        let Self { service, bench } = self;
+        bench.take(report);
+        if let Some(frame) = service.record(&report.record)
+            && !send(frame)
+        {
+            service.note_record_lost();
+        }
+        service.poll(&report.seen, bench);
+    }
+
+    /// Takes what else the tick has left.
+    pub fn poll(&mut self, send: &mut Send<'_>) {
+        let Self { service, bench } = self;
+        bench.fetch();
+        while let Some(outcome) = bench.ends.outcomes.dequeue() {
+            bench.settled(outcome.ticket);
+            // A reply that finds no room is asked for again.
+            service.settle(outcome.ticket, outcome.result, &bench.seen, &mut |frame| {
+                send(frame);
+            });
+        }
+        bench.end_stream_of_other_than(service.session());
+        bench.stream(&mut |body| {
+            if !send(service.samples(body)) {
+                service.note_record_lost();
+            }
+        });
+    }
+
+    /// Takes bytes that came, any number of them.
+    pub fn receive(&mut self, bytes: &[u8], send: &mut Send<'_>) {
+        let Self { service, bench } = self;
+        let seen = bench.seen;
+        service.receive(bytes, &seen, bench, &mut |frame| {
+            send(frame);
+        });
+    }
+
+    /// True once a restart was asked for, and acknowledged: when what was sent is out, start the firmware anew.
+    pub const fn wants_restart(&self) -> bool {
+        self.bench.wants_restart
+    }
+
+    /// Puts the axis out of control, whoever has it: for a board that cannot go on with it.
+    pub fn disable(&mut self) {
+        self.bench.disable();
+    }
+}

@@ -1,0 +1,142 @@
+//! The queues between the tick and thread mode: one producer and one consumer each, and nobody waits.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use heapless::spsc::{Consumer, Producer, Queue};
+use leadscrew::params::AxisConfig;
+use leadscrew::protocol::refusal::Refusal;
+use leadscrew::protocol::service::Ticket;
+use leadscrew::scope::{Sample, Scope};
+use leadscrew::supervisor::FirstFault;
+
+use crate::axis_control::Request;
+use crate::captures::{CaptureReceiver, CaptureSender, WORDS};
+
+/// Requests that may wait.
+const REQUESTS: usize = 8;
+/// Outcomes that may wait: more than there are requests.
+const OUTCOMES: usize = 32;
+/// Samples that may wait: 60 ms at 1 kHz.
+const SAMPLES: usize = 64;
+
+/// What came of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// That of the request.
+    pub ticket: Ticket,
+    /// What came of it.
+    pub result: Result<(), Refusal>,
+}
+
+/// Memory of the queues.
+pub struct Queues {
+    requests: Queue<Request, REQUESTS>,
+    configs: Queue<(Ticket, AxisConfig), 2>,
+    outcomes: Queue<Outcome, OUTCOMES>,
+    faults: Queue<FirstFault, 4>,
+    scopes: Queue<Scope<'static>, 2>,
+    scopes_back: Queue<Scope<'static>, 2>,
+    samples: Queue<Sample, SAMPLES>,
+    captures: Queue<u32, WORDS>,
+    refused: AtomicU32,
+}
+
+/// What the tick holds of them.
+pub struct TickEnds {
+    pub(crate) requests: Consumer<'static, Request>,
+    pub(crate) configs: Consumer<'static, (Ticket, AxisConfig)>,
+    pub(crate) outcomes: Producer<'static, Outcome>,
+    pub(crate) faults: Producer<'static, FirstFault>,
+    pub(crate) scopes: Consumer<'static, Scope<'static>>,
+    pub(crate) scopes_back: Producer<'static, Scope<'static>>,
+    pub(crate) samples: Producer<'static, Sample>,
+    refused: &'static AtomicU32,
+}
+
+/// What thread mode holds of them.
+pub struct LinkEnds {
+    /// To the axis.
+    pub requests: Producer<'static, Request>,
+    /// New configurations, with their tickets.
+    pub configs: Producer<'static, (Ticket, AxisConfig)>,
+    /// What came of both.
+    pub outcomes: Consumer<'static, Outcome>,
+    /// The first fault, told again when others follow it.
+    pub faults: Consumer<'static, FirstFault>,
+    /// Scopes for the tick.
+    pub scopes: Producer<'static, Scope<'static>>,
+    /// Scopes that are over.
+    pub scopes_back: Consumer<'static, Scope<'static>>,
+    /// Samples of the stream.
+    pub samples: Consumer<'static, Sample>,
+    /// Refusals whose outcome nobody fetched.
+    pub refused: &'static AtomicU32,
+}
+
+impl Default for Queues {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Queues {
+    /// Empty queues.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            requests: Queue::new(),
+            configs: Queue::new(),
+            outcomes: Queue::new(),
+            faults: Queue::new(),
+            scopes: Queue::new(),
+            scopes_back: Queue::new(),
+            samples: Queue::new(),
+            captures: Queue::new(),
+            refused: AtomicU32::new(0),
+        }
+    }
+
+    /// The ends for the tick, and those for thread mode.
+    pub fn split(&'static mut self) -> (TickEnds, CaptureSender, LinkEnds, CaptureReceiver) {
+        let (ask, asked) = self.requests.split();
+        let (configure, configs) = self.configs.split();
+        let (answer, outcomes) = self.outcomes.split();
+        let (tell, faults) = self.faults.split();
+        let (lend, scopes) = self.scopes.split();
+        let (give_back, scopes_back) = self.scopes_back.split();
+        let (sample, samples) = self.samples.split();
+        let (capture, captures) = self.captures.split();
+        let tick = TickEnds {
+            requests: asked,
+            configs,
+            outcomes: answer,
+            faults: tell,
+            scopes,
+            scopes_back: give_back,
+            samples: sample,
+            refused: &self.refused,
+        };
+        let link = LinkEnds {
+            requests: ask,
+            configs: configure,
+            outcomes,
+            faults,
+            scopes: lend,
+            scopes_back,
+            samples,
+            refused: &self.refused,
+        };
+        let (capture, captures) = (CaptureSender::new(capture), CaptureReceiver::new(captures));
+        (tick, capture, link, captures)
+    }
+}
+
+impl TickEnds {
+    /// Counts a refusal whose outcome found no room.
+    pub(crate) fn note_lost_outcome(&self, result: Result<(), Refusal>) {
+        let refused = self.refused.load(Ordering::Relaxed);
+        let more = u32::from(result.is_err());
+        self.refused
+            .store(refused.wrapping_add(more), Ordering::Relaxed);
+    }
+}
