@@ -133,6 +133,24 @@ macro_rules! signals {
             pub(super) fn value(self, axis: &Axis<'_>) -> i64 {
                 match self { $(Self::$signal => { let $axis = axis; $value })* }
             }
+
+            /// Writes the low word of its value in the last tick to `word`; `newest` is the whole value of the sample before, of
+            /// a wide signal. Gives it back where the low words do not tell the way from there.
+            // Each arm knows how wide it is: no narrow one pays for what wide ones need.
+            #[inline(always)]
+            pub(super) fn sample(self, axis: &Axis<'_>, word: &mut i32, newest: &mut i64) -> Option<i64> {
+                match self { $(Self::$signal => {
+                    let value = { let $axis = axis; $value };
+                    *word = value as i32;
+                    if matches!(Kind::$kind, Kind::Wide) {
+                        let from = core::mem::replace(newest, value);
+                        let step = value.wrapping_sub(from);
+                        (step != i64::from(step as i32)).then_some(from)
+                    } else {
+                        None
+                    }
+                })* }
+            }
         }
     };
 }

@@ -1,5 +1,6 @@
 //! Signals as a live view has them: a sample at a time, given away.
 
+use super::apart;
 use super::error::ScopeError;
 use super::signals::{MOST_SIGNALS, Signals};
 use crate::axis::Axis;
@@ -59,7 +60,7 @@ impl Stream {
         self.rest = self.every.wrapping_sub(1);
         let mut words = [0; MOST_SIGNALS];
         for (word, signal) in words.iter_mut().zip(self.signals.as_slice()) {
-            *word = signal.value(axis) as i32;
+            *word = signal.value(apart(axis)) as i32;
         }
         Some(Sample {
             tick: axis.outputs().tick,
