@@ -22,6 +22,7 @@
 
 mod error;
 mod interruptions;
+mod readers;
 mod recording;
 mod setup;
 mod signal;
@@ -41,6 +42,7 @@ pub use trigger::{Side, Slope, Trigger};
 pub use unwrap::Unwrap;
 
 use interruptions::Interruptions;
+use readers::{Wide, WordReaders};
 use trigger::Watch;
 
 use crate::axis::Axis;
@@ -83,9 +85,10 @@ pub struct Scope<'m> {
     trigger_tick: u32,
     /// Samples since arming.
     taken: u64,
-    /// Tick of the newest sample, and its wide values.
+    /// Tick of the newest sample.
     newest_tick: u32,
-    newest: [i64; MOST_SIGNALS],
+    words: WordReaders,
+    wide: Wide,
     interruptions: Interruptions,
     memory: &'m mut [i32],
 }
@@ -124,7 +127,8 @@ impl<'m> Scope<'m> {
             trigger_tick: 0,
             taken: 0,
             newest_tick: 0,
-            newest: [0; MOST_SIGNALS],
+            words: WordReaders::of(&setup.signals),
+            wide: Wide::of(&setup.signals),
             interruptions: Interruptions::new(),
             memory,
         })
@@ -216,26 +220,24 @@ impl<'m> Scope<'m> {
         if self.missed != 0 {
             self.interrupt_by_missed();
         }
-        let signals = &self.setup.signals;
-        let behind = self.next.wrapping_add(signals.len());
+        let behind = self.next.wrapping_add(self.words.len());
         // There are always so many: `end` lies within the memory.
         let words = self.memory.get_mut(self.next..behind).unwrap_or_default();
-        let places = words.iter_mut().zip(&mut self.newest);
-        for (index, ((word, newest), signal)) in places.zip(signals.as_slice()).enumerate() {
-            let Some(from) = signal.sample(apart(axis), word, newest) else {
-                continue;
-            };
-            if self.taken > 0 {
+        self.words.read(axis, words);
+        let (taken, samples) = (self.taken, self.setup.samples);
+        self.wide.note(axis, |jump| {
+            // The first sample comes from nowhere.
+            if taken > 0 {
                 let what = Interruption::Jump {
-                    signal: index as u8,
-                    from,
-                    to: *newest,
+                    signal: jump.place,
+                    from: jump.from,
+                    to: jump.to,
                 };
-                let oldest = self.taken.saturating_sub(u64::from(self.setup.samples));
+                let oldest = taken.saturating_sub(u64::from(samples));
                 self.interruptions
-                    .keep(self.taken, self.newest_tick, &what, oldest);
+                    .keep(taken, self.newest_tick, &what, oldest);
             }
-        }
+        });
         self.next = if behind >= self.end { 0 } else { behind };
         self.taken = self.taken.wrapping_add(1);
         self.newest_tick = tick;
@@ -268,11 +270,4 @@ impl<'m> Scope<'m> {
     pub fn into_memory(self) -> &'m mut [i32] {
         self.memory
     }
-}
-
-/// The same axis, of which the compiler does not know that it is: else it reads all that any signal may be before it looks
-/// which ones there are, 100 instructions.
-#[inline(always)]
-fn apart<'a, 'm>(axis: &'a Axis<'m>) -> &'a Axis<'m> {
-    core::hint::black_box(axis)
 }

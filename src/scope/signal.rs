@@ -83,6 +83,12 @@ pub struct Description {
     pub frac: u32,
 }
 
+// Functions, looked up once: a tick that looks at the list of signals for each of its samples takes twice as long.
+/// Reads the word that a sample has of a signal.
+pub(super) type ReadWord = fn(&Axis<'_>) -> i32;
+/// Reads the whole value of a signal.
+pub(super) type ReadValue = fn(&Axis<'_>) -> i64;
+
 /// Declares the signals: description, `Name = number, "name", kind, unit, fractional bits, value`, which is whole, as an
 /// `i64`.
 macro_rules! signals {
@@ -128,28 +134,14 @@ macro_rules! signals {
                 },)* }
             }
 
-            /// Its whole value in the last tick: what a sample is the low word of.
-            #[inline(always)]
-            pub(super) fn value(self, axis: &Axis<'_>) -> i64 {
-                match self { $(Self::$signal => { let $axis = axis; $value })* }
+            /// Reads its word in the last tick.
+            pub(super) const fn word_reader(self) -> ReadWord {
+                match self { $(Self::$signal => |$axis: &Axis<'_>| $value as i32,)* }
             }
 
-            /// Writes the low word of its value in the last tick to `word`; `newest` is the whole value of the sample before, of
-            /// a wide signal. Gives it back where the low words do not tell the way from there.
-            // Each arm knows how wide it is: no narrow one pays for what wide ones need.
-            #[inline(always)]
-            pub(super) fn sample(self, axis: &Axis<'_>, word: &mut i32, newest: &mut i64) -> Option<i64> {
-                match self { $(Self::$signal => {
-                    let value = { let $axis = axis; $value };
-                    *word = value as i32;
-                    if matches!(Kind::$kind, Kind::Wide) {
-                        let from = core::mem::replace(newest, value);
-                        let step = value.wrapping_sub(from);
-                        (step != i64::from(step as i32)).then_some(from)
-                    } else {
-                        None
-                    }
-                })* }
+            /// Reads its whole value in the last tick.
+            pub(super) const fn value_reader(self) -> ReadValue {
+                match self { $(Self::$signal => |$axis: &Axis<'_>| $value,)* }
             }
         }
     };
@@ -234,12 +226,6 @@ impl Signal {
     #[must_use]
     pub const fn frac(self) -> u32 {
         self.description().frac
-    }
-
-    /// [`Self::value`] where time is short for a call but memory for copies of its table is not to be had.
-    #[inline(never)]
-    pub(super) fn value_called(self, axis: &Axis<'_>) -> i64 {
-        self.value(axis)
     }
 }
 
