@@ -47,10 +47,10 @@ impl Interruptions {
         }
     }
 
-    /// Keeps one; those that come before the sample `oldest` or an earlier one make room.
+    /// Keeps one that comes before `sample`; those that come before `oldest` or an earlier one make room.
     #[cold]
     #[inline(never)]
-    pub fn keep(&mut self, entry: &Entry, oldest: u64) {
+    pub fn keep(&mut self, sample: u64, tick_before: u32, what: &Interruption, oldest: u64) {
         let entries = self.entries;
         let mut in_ring = entries
             .into_iter()
@@ -58,8 +58,14 @@ impl Interruptions {
             .filter(|entry| entry.sample > oldest);
         self.entries = core::array::from_fn(|_| in_ring.next());
         match self.entries.iter_mut().find(|place| place.is_none()) {
-            Some(place) => *place = Some(*entry),
-            None => self.dropped = Some(entry.sample),
+            Some(place) => {
+                *place = Some(Entry {
+                    sample,
+                    tick_before,
+                    what: *what,
+                });
+            }
+            None => self.dropped = Some(sample),
         }
     }
 

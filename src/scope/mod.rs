@@ -22,6 +22,7 @@
 
 mod error;
 mod interruptions;
+mod readers;
 mod recording;
 mod setup;
 mod signal;
@@ -40,9 +41,9 @@ pub use stream::{Sample, Stream};
 pub use trigger::{Side, Slope, Trigger};
 pub use unwrap::Unwrap;
 
-use interruptions::{Entry, Interruptions};
+use interruptions::Interruptions;
+use readers::{Wide, WordReaders};
 use trigger::Watch;
-use unwrap::nearest;
 
 use crate::axis::Axis;
 
@@ -84,9 +85,10 @@ pub struct Scope<'m> {
     trigger_tick: u32,
     /// Samples since arming.
     taken: u64,
-    /// Tick of the newest sample, and its wide values.
+    /// Tick of the newest sample.
     newest_tick: u32,
-    newest: [i64; MOST_SIGNALS],
+    words: WordReaders,
+    wide: Wide,
     interruptions: Interruptions,
     memory: &'m mut [i32],
 }
@@ -125,7 +127,8 @@ impl<'m> Scope<'m> {
             trigger_tick: 0,
             taken: 0,
             newest_tick: 0,
-            newest: [0; MOST_SIGNALS],
+            words: WordReaders::of(&setup.signals),
+            wide: Wide::of(&setup.signals),
             interruptions: Interruptions::new(),
             memory,
         })
@@ -217,35 +220,24 @@ impl<'m> Scope<'m> {
         if self.missed != 0 {
             self.interrupt_by_missed();
         }
-        let signals = &self.setup.signals;
-        let behind = self.next.wrapping_add(signals.len());
+        let behind = self.next.wrapping_add(self.words.len());
         // There are always so many: `end` lies within the memory.
         let words = self.memory.get_mut(self.next..behind).unwrap_or_default();
-        let mut wide = signals.wide();
-        let signals = signals.as_slice().iter();
-        for (index, ((word, newest), signal)) in
-            (0_u8..).zip(words.iter_mut().zip(&mut self.newest).zip(signals))
-        {
-            let value = signal.value(axis);
-            *word = value as i32;
-            if wide & 1 != 0 {
-                let from = core::mem::replace(newest, value);
-                if nearest(from, value as i32) != value && self.taken > 0 {
-                    let entry = Entry {
-                        sample: self.taken,
-                        tick_before: self.newest_tick,
-                        what: Interruption::Jump {
-                            signal: index,
-                            from,
-                            to: value,
-                        },
-                    };
-                    let oldest = self.taken.saturating_sub(u64::from(self.setup.samples));
-                    self.interruptions.keep(&entry, oldest);
-                }
+        self.words.read(axis, words);
+        let (taken, samples) = (self.taken, self.setup.samples);
+        self.wide.note(axis, |jump| {
+            // The first sample comes from nowhere.
+            if taken > 0 {
+                let what = Interruption::Jump {
+                    signal: jump.place,
+                    from: jump.from,
+                    to: jump.to,
+                };
+                let oldest = taken.saturating_sub(u64::from(samples));
+                self.interruptions
+                    .keep(taken, self.newest_tick, &what, oldest);
             }
-            wide >>= 1;
-        }
+        });
         self.next = if behind >= self.end { 0 } else { behind };
         self.taken = self.taken.wrapping_add(1);
         self.newest_tick = tick;
@@ -260,14 +252,11 @@ impl<'m> Scope<'m> {
     /// Notes that ticks are missing before the sample that comes.
     #[cold]
     fn interrupt_by_missed(&mut self) {
-        let entry = Entry {
-            sample: self.taken,
-            tick_before: self.newest_tick,
-            what: Interruption::Missed { ticks: self.missed },
-        };
+        let what = Interruption::Missed { ticks: self.missed };
         self.missed = 0;
         let oldest = self.taken.saturating_sub(u64::from(self.setup.samples));
-        self.interruptions.keep(&entry, oldest);
+        self.interruptions
+            .keep(self.taken, self.newest_tick, &what, oldest);
     }
 
     /// What was recorded; none before [`Self::is_over`]. Outside the tick.

@@ -1,6 +1,7 @@
 //! What a scope recorded, for whoever reads it outside the tick.
 
 use super::interruptions::{Interruption, Interruptions};
+use super::readers::Wide;
 use super::signal::Kind;
 use super::unwrap::nearest;
 use super::{MOST_SIGNALS, Scope, Setup, State};
@@ -27,7 +28,7 @@ pub struct Recording<'s> {
     first: u64,
     trigger: Option<(u32, u32)>,
     newest_tick: u32,
-    newest: &'s [i64; MOST_SIGNALS],
+    wide: &'s Wide,
     interruptions: &'s Interruptions,
 }
 
@@ -53,7 +54,7 @@ impl<'s> Recording<'s> {
             first: scope.taken.wrapping_sub(u64::from(length)),
             trigger: is_triggered.then_some((scope.before, scope.trigger_tick)),
             newest_tick: scope.newest_tick,
-            newest: &scope.newest,
+            wide: &scope.wide,
             interruptions: &scope.interruptions,
         }
     }
@@ -149,7 +150,7 @@ impl<'s> Recording<'s> {
 
     /// Back from the newest value, sample by sample.
     fn wide_base(&self, index: usize) -> i64 {
-        let mut value = self.newest.get(index).copied().unwrap_or(0);
+        let mut value = self.wide.newest(index);
         for sample in (1..self.length).rev() {
             let jump = self
                 .interruptions()

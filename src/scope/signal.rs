@@ -83,6 +83,12 @@ pub struct Description {
     pub frac: u32,
 }
 
+// Functions, looked up once: a tick that looks at the list of signals for each of its samples takes twice as long.
+/// Reads the word that a sample has of a signal.
+pub(super) type ReadWord = fn(&Axis<'_>) -> i32;
+/// Reads the whole value of a signal.
+pub(super) type ReadValue = fn(&Axis<'_>) -> i64;
+
 /// Declares the signals: description, `Name = number, "name", kind, unit, fractional bits, value`, which is whole, as an
 /// `i64`.
 macro_rules! signals {
@@ -128,10 +134,14 @@ macro_rules! signals {
                 },)* }
             }
 
-            /// Its whole value in the last tick: what a sample is the low word of.
-            #[inline(always)]
-            pub(super) fn value(self, axis: &Axis<'_>) -> i64 {
-                match self { $(Self::$signal => { let $axis = axis; $value })* }
+            /// Reads its word in the last tick.
+            pub(super) const fn word_reader(self) -> ReadWord {
+                match self { $(Self::$signal => |$axis: &Axis<'_>| $value as i32,)* }
+            }
+
+            /// Reads its whole value in the last tick.
+            pub(super) const fn value_reader(self) -> ReadValue {
+                match self { $(Self::$signal => |$axis: &Axis<'_>| $value,)* }
             }
         }
     };
@@ -216,12 +226,6 @@ impl Signal {
     #[must_use]
     pub const fn frac(self) -> u32 {
         self.description().frac
-    }
-
-    /// [`Self::value`] where time is short for a call but memory for copies of its table is not to be had.
-    #[inline(never)]
-    pub(super) fn value_called(self, axis: &Axis<'_>) -> i64 {
-        self.value(axis)
     }
 }
 

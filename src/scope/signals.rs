@@ -1,18 +1,17 @@
 //! A list of signals.
 
 use super::error::ScopeError;
-use super::signal::{Kind, Signal};
+use super::signal::Signal;
 
 /// Most signals that are recorded at once.
 pub const MOST_SIGNALS: usize = 8;
 
 /// One to [`MOST_SIGNALS`] signals, in the order in which a sample has them.
-#[derive(Clone, Copy, Debug)]
+// Behind the last one the list is always the same: so lists can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signals {
     list: [Signal; MOST_SIGNALS],
     length: u8,
-    /// Bit n: signal n is [`Kind::Wide`].
-    wide: u8,
 }
 
 impl Signals {
@@ -46,17 +45,12 @@ impl Signals {
             return Err(ScopeError::TooManySignals { given });
         }
         let mut list = [Signal::Tick; MOST_SIGNALS];
-        let mut wide = 0_u8;
-        for ((place, signal), bit) in list.iter_mut().zip(signals).zip(0_u32..) {
+        for (place, signal) in list.iter_mut().zip(signals) {
             *place = signal?;
-            if matches!(place.kind(), Kind::Wide) {
-                wide |= 1_u8.wrapping_shl(bit);
-            }
         }
         Ok(Self {
             list,
             length: given as u8,
-            wide,
         })
     }
 
@@ -74,18 +68,4 @@ impl Signals {
     pub fn as_slice(&self) -> &[Signal] {
         self.list.get(..self.len()).unwrap_or(&self.list)
     }
-
-    /// Bit n: signal n is [`Kind::Wide`].
-    #[inline]
-    pub(super) const fn wide(&self) -> u8 {
-        self.wide
-    }
 }
-
-impl PartialEq for Signals {
-    fn eq(&self, other: &Self) -> bool {
-        self.as_slice() == other.as_slice()
-    }
-}
-
-impl Eq for Signals {}

@@ -1,6 +1,7 @@
 //! Signals as a live view has them: a sample at a time, given away.
 
 use super::error::ScopeError;
+use super::readers::WordReaders;
 use super::signals::{MOST_SIGNALS, Signals};
 use crate::axis::Axis;
 
@@ -19,6 +20,7 @@ pub struct Stream {
     signals: Signals,
     every: u16,
     rest: u16,
+    words: WordReaders,
 }
 
 impl Stream {
@@ -26,7 +28,7 @@ impl Stream {
     ///
     /// # Errors
     /// [`ScopeError::NoDecimation`].
-    pub const fn new(signals: Signals, every: u16) -> Result<Self, ScopeError> {
+    pub fn new(signals: Signals, every: u16) -> Result<Self, ScopeError> {
         if every == 0 {
             return Err(ScopeError::NoDecimation);
         }
@@ -34,6 +36,7 @@ impl Stream {
             signals,
             every,
             rest: 0,
+            words: WordReaders::of(&signals),
         })
     }
 
@@ -58,9 +61,7 @@ impl Stream {
         }
         self.rest = self.every.wrapping_sub(1);
         let mut words = [0; MOST_SIGNALS];
-        for (word, signal) in words.iter_mut().zip(self.signals.as_slice()) {
-            *word = signal.value(axis) as i32;
-        }
+        self.words.read(axis, &mut words);
         Some(Sample {
             tick: axis.outputs().tick,
             words,
@@ -74,7 +75,7 @@ impl Signals {
     pub fn values(&self, axis: &Axis<'_>) -> [i64; MOST_SIGNALS] {
         let mut values = [0; MOST_SIGNALS];
         for (value, signal) in values.iter_mut().zip(self.as_slice()) {
-            *value = signal.value_called(axis);
+            *value = signal.value_reader()(axis);
         }
         values
     }

@@ -1,6 +1,6 @@
 //! What a scope waits for. It looks in every tick, also in those that are not sampled.
 
-use super::signal::Signal;
+use super::signal::{ReadValue, Signal};
 use crate::axis::{Axis, Outputs};
 use crate::supervisor::{Fault, FaultSet};
 
@@ -72,13 +72,20 @@ enum Before {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     trigger: Trigger,
+    /// Reads the signal that it looks at, if it does.
+    read: ReadValue,
     before: Before,
 }
 
 impl Watch {
     pub const fn new(trigger: Trigger) -> Self {
+        let signal = match trigger {
+            Trigger::Level { signal, .. } | Trigger::Edge { signal, .. } => signal,
+            _ => Signal::Tick,
+        };
         Self {
             trigger,
+            read: signal.value_reader(),
             before: Before::Nothing,
         }
     }
@@ -90,22 +97,14 @@ impl Watch {
         match self.trigger {
             Trigger::Now => true,
             Trigger::Force => false,
-            Trigger::Level {
-                signal,
-                level,
-                side,
-            } => {
-                let value = signal.value_called(axis);
+            Trigger::Level { level, side, .. } => {
+                let value = (self.read)(axis);
                 match side {
                     Side::Above => value > level,
                     Side::Below => value < level,
                 }
             }
-            Trigger::Edge {
-                signal,
-                level,
-                slope,
-            } => self.sees_edge(signal.value_called(axis), level, slope),
+            Trigger::Edge { level, slope, .. } => self.sees_edge((self.read)(axis), level, slope),
             Trigger::Fault(fault) => is_latched_now(axis, fault),
             Trigger::Warning => self.sees_warning(outputs),
             Trigger::Command => {

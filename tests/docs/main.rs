@@ -1,6 +1,7 @@
 //! Documents that are made from the code: each is what the code says now. `cargo xtask golden` writes them anew.
 
 mod parameters;
+mod scope;
 mod wire_format;
 
 use std::path::Path;
@@ -19,4 +20,12 @@ fn reviewed(name: &str, text: &str) {
         found == text,
         "docs/{name} is not what the code says: run `cargo xtask golden` and review it"
     );
+}
+
+/// `page` with what is between the marks of `name` replaced.
+fn with(page: &str, name: &str, text: &str) -> String {
+    let mark = format!("<!-- made: {name} -->\n");
+    let (before, rest) = page.split_once(&mark).expect("the page has the mark");
+    let (_, after) = rest.split_once("<!-- end -->").expect("it has an end");
+    format!("{before}{mark}{text}<!-- end -->{after}")
 }

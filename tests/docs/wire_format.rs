@@ -11,7 +11,7 @@ use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
 
-use crate::reviewed;
+use crate::{reviewed, with};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/wire-format.md");
 
@@ -73,14 +73,6 @@ fn refusals() -> String {
         let _ = writeln!(text, "| {number} | {name} | {what} | {remedy} |");
     }
     text
-}
-
-/// `page` with what is between the marks of `name` replaced.
-fn with(page: &str, name: &str, text: &str) -> String {
-    let mark = format!("<!-- made: {name} -->\n");
-    let (before, rest) = page.split_once(&mark).expect("the page has the mark");
-    let (_, after) = rest.split_once("<!-- end -->").expect("it has an end");
-    format!("{before}{mark}{text}<!-- end -->{after}")
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod compensation;
 mod edges;
 mod one_stamp;
 mod samples;
+mod scope;
 mod simulator;
 mod sources;
 mod staged;
@@ -49,6 +50,7 @@ fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     edges::run(counter)?;
     calibration::run(counter);
     compensation::run(counter)?;
+    scope::run(counter)?;
     simulator::run(counter)
 }
 
