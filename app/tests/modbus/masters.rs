@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use leadscrew::protocol::service::Seen;
 use leadscrew::supervisor::State;
@@ -51,6 +53,13 @@ fn is_there(program: &str) -> bool {
         eprintln!("skipped: {program} is not installed; `cargo xtask setup` tries to");
     }
     found
+}
+
+/// First register of `motion.counts_per_mm`.
+fn place_of_scale() -> usize {
+    let names = crate::page::names();
+    let index = names.iter().position(|name| name == "motion.counts_per_mm");
+    1000 + 4 * index.unwrap()
 }
 
 /// What it printed, both ways; with how it ended.
@@ -102,10 +111,8 @@ fn mbpoll_reads_and_writes() {
     shown(&["-t", "3", "-r", "86"], &["Illegal data address"]);
     shown(&["-t", "0", "-r", "0"], &["Illegal data address"]);
 
-    // counts_per_mm is the first parameter of the section motion: 2 000.5.
-    let place = crate::page::names();
-    let place = place.iter().position(|name| name == "motion.counts_per_mm");
-    let place = (1000 + 4 * place.unwrap()).to_string();
+    // 2 000.5, as its four words.
+    let place = place_of_scale().to_string();
     let value = ["-t", "4", "-r", &place, "--", "16543", "16896", "0", "0"];
     shown(&value, &["Written 4 references"]);
     assert_eq!(
@@ -128,9 +135,7 @@ fn mbpoll_reads_and_writes() {
 
 /// Runs the script against a line; its own assertions say what was wrong.
 fn pymodbus(served: &Served, kind: &str) {
-    let place = crate::page::names();
-    let place = place.iter().position(|name| name == "motion.counts_per_mm");
-    let place = 1000 + 4 * place.unwrap();
+    let place = place_of_scale();
     let run = |part: &str| {
         let output = Command::new(PYTHON)
             .arg(format!("{FOLDER}/master.py"))
@@ -225,4 +230,33 @@ fn pymodbus_reads_and_writes_over_tcp() {
     if pymodbus_is_there() {
         pymodbus(&on_tcp(standing()), "tcp");
     }
+}
+
+/// The script that looks at a running axis, on one whose ticks go on.
+#[test]
+fn a_running_axis_agrees_with_itself() {
+    if !pymodbus_is_there() {
+        return;
+    }
+    let served = on_tcp(standing());
+    let panel = served.panel.clone();
+    let is_over = AtomicBool::new(false);
+    let output = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !is_over.load(Ordering::Relaxed) {
+                panel.lock().unwrap().view.seen.tick += 1;
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        });
+        let output = Command::new(PYTHON)
+            .arg(format!("{FOLDER}/live.py"))
+            .args(["tcp", &served.address, &UNIT.to_string()])
+            .arg(place_of_scale().to_string())
+            .arg(crate::page::list_checksum().to_string())
+            .output();
+        is_over.store(true, Ordering::Relaxed);
+        output.unwrap()
+    });
+    let text = text(output);
+    assert!(text.contains("all right: off"), "{text}");
 }
