@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "\
 usage: cargo xtask COMMAND
-  setup            install what is missing: Rust target and components, qemu-system-arm
+  setup            install what is missing: Rust target and components, qemu-system-arm, Modbus masters
   test [--long]    set up, then everything CI checks, in rings; --long adds the long repeats
   qemu [WORD...]   run the axis in QEMU at 1000 and 2500 Hz; WORD goes to the guest
   bench [--bless]  count instructions in QEMU and compare with the golden table; --bless rewrites it
@@ -76,6 +76,10 @@ fn golden_tables() -> Result<()> {
         .run()?;
     command::cargo(["test", "--package", "leadscrew-host"])
         .words(&["--test", "scenarios", "documents"])
+        .env("INSTA_UPDATE", "always")
+        .run()?;
+    command::cargo(["test", "--package", "leadscrew-app"])
+        .words(&["--test", "modbus", "page"])
         .env("INSTA_UPDATE", "always")
         .run()?;
     bench::run(true)

@@ -3,17 +3,22 @@
 use std::path::Path;
 
 use crate::Result;
-use crate::command::{Call, cargo, program};
+use crate::command::{Call, cargo, program, root};
 use crate::packages::TARGET;
 
 const QEMU: &str = "qemu-system-arm";
+const MBPOLL: &str = "mbpoll";
+/// Version that the tests were written with.
+const PYMODBUS: &str = "3.16.1";
 
 /// Checks everything, installs what is missing, or says what to type.
 pub fn run() -> Result<()> {
     component("clippy", || cargo(["clippy", "--version"]))?;
     component("rustfmt", || cargo(["fmt", "--version"]))?;
     target()?;
-    qemu()
+    qemu()?;
+    masters();
+    Ok(())
 }
 
 fn component(name: &str, check: impl Fn() -> Call) -> Result<()> {
@@ -53,21 +58,58 @@ fn target_is_there() -> bool {
 }
 
 fn qemu() -> Result<()> {
-    let is_there = || program(QEMU, ["--version"]).succeeds();
+    debian_package(QEMU, || program(QEMU, ["--version"]).succeeds())
+}
+
+/// Modbus masters of others, which the axis's unit is tested by; without one its test says so and passes.
+fn masters() {
+    let has_mbpoll = || program(MBPOLL, ["-V"]).succeeds();
+    for result in [debian_package(MBPOLL, has_mbpoll), pymodbus()] {
+        if let Err(error) = result {
+            eprintln!("warning: {error}");
+        }
+    }
+}
+
+/// In an environment of its own under `target`.
+fn pymodbus() -> Result<()> {
+    let folder = root().join("target/pymodbus");
+    let folder = folder.to_string_lossy();
+    let python = format!("{folder}/bin/python");
+    let check = format!("import pymodbus, serial; assert pymodbus.__version__ == '{PYMODBUS}'");
+    let is_there = || program(&python, ["-c", &check]).succeeds();
+    if is_there() {
+        return Ok(());
+    }
+    println!("installing pymodbus {PYMODBUS}");
+    program("python3", ["-m", "venv", &folder]).run()?;
+    let wanted = format!("pymodbus[serial]=={PYMODBUS}");
+    program(&python, ["-m", "pip", "install", "--quiet", &wanted]).run()?;
+    if is_there() {
+        Ok(())
+    } else {
+        Err(format!(
+            "pymodbus {PYMODBUS} is still missing after its installation"
+        ))
+    }
+}
+
+/// Installs the package of the program's name.
+fn debian_package(name: &str, is_there: impl Fn() -> bool) -> Result<()> {
     if is_there() {
         return Ok(());
     }
     let by_hand =
-        format!("{QEMU} is missing; install it: apt-get update && apt-get install {QEMU}");
+        format!("{name} is missing; install it: apt-get update && apt-get install {name}");
     let Some(apt_get) = apt_get() else {
         return Err(by_hand);
     };
-    println!("installing {QEMU}");
+    println!("installing {name}");
     // One unreachable source among many fails the update, and the list may be good enough.
     if let Err(error) = apt_get(&["update"]).run() {
         eprintln!("warning: {error}");
     }
-    apt_get(&["install", "--yes", "--no-install-recommends", QEMU])
+    apt_get(&["install", "--yes", "--no-install-recommends", name])
         .run()
         .map_err(|error| format!("{error}; {by_hand}"))?;
     if is_there() { Ok(()) } else { Err(by_hand) }

@@ -5,7 +5,7 @@
 //! once; what turns out to be none is left behind byte by byte; and silence ends whatever is left. Frames of other units,
 //! requests and replies, are passed over as a whole, so that what they carry is not taken for a frame.
 
-use crc::{CRC_16_MODBUS, Crc, NoTable};
+use crc::{CRC_16_MODBUS, Crc};
 use rmodbus::consts::ModbusFunction;
 use rmodbus::{ErrorKind, ModbusProto, guess_request_frame_len, guess_response_frame_len};
 
@@ -16,7 +16,8 @@ pub const MAX_FRAME: usize = 256;
 /// Shortest frame: unit, function, CRC.
 const MIN_FRAME: usize = 4;
 
-const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
+// By a table of 512 bytes, as a static: hostile bytes have it computed at every place of the buffer.
+static CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_MODBUS);
 
 /// Checksum of `bytes`; it follows them low byte first.
 #[must_use]

@@ -102,9 +102,9 @@ impl<P: Panel> Map<'_, P> {
         Ok(())
     }
 
-    /// Writes registers, two bytes each, by function 16 (`is_block`) or 6.
-    pub fn write(&mut self, address: u16, data: &[u8], is_block: bool) -> Result<(), ErrorKind> {
-        let outcome = self.try_to_write(address, data, is_block);
+    /// Writes registers, two bytes each, by function 16 or 6.
+    pub fn write(&mut self, address: u16, data: &[u8]) -> Result<(), ErrorKind> {
+        let outcome = self.try_to_write(address, data);
         let (number, outcome) = match outcome {
             Ok(()) => (0, Ok(())),
             Err((refusal, error)) => (refusal as u16, Err(error)),
@@ -113,12 +113,7 @@ impl<P: Panel> Map<'_, P> {
         outcome
     }
 
-    fn try_to_write(
-        &mut self,
-        address: u16,
-        data: &[u8],
-        is_block: bool,
-    ) -> Result<(), (Refusal, ErrorKind)> {
+    fn try_to_write(&mut self, address: u16, data: &[u8]) -> Result<(), (Refusal, ErrorKind)> {
         if address == SAVE {
             let is_key = data == SAVE_KEY.to_be_bytes();
             return if is_key {
@@ -133,11 +128,8 @@ impl<P: Panel> Map<'_, P> {
             .ok_or(illegal(Refusal::UnknownParameter))?;
         let (given, rest) = data.as_chunks();
         let is_whole = (address - VALUES).is_multiple_of(WORDS_PER_PARAMETER) && rest.is_empty();
-        if !is_whole || !is_block || given.len() > MOST_PARAMETERS {
+        if !is_whole || given.len() > MOST_PARAMETERS {
             return Err(illegal(Refusal::NotUnderstood));
-        }
-        if usize::from(self.list.count - first) < given.len() {
-            return Err(illegal(Refusal::UnknownParameter));
         }
         let mut values = [0.0; MOST_PARAMETERS];
         for (value, bytes) in values.iter_mut().zip(given) {

@@ -135,8 +135,7 @@ impl Server {
             reply,
             ..
         } = self;
-        let mut frame =
-            ModbusFrame::new(unit, request, ModbusProto::Rtu, reply).with_broadcast_units(&[]);
+        let mut frame = ModbusFrame::new(unit, request, ModbusProto::Rtu, reply);
         let number = request.get(1).copied().unwrap_or(EXCEPTIONS);
         if number >= EXCEPTIONS {
             return Ok(());
@@ -165,9 +164,8 @@ impl Server {
                 };
                 frame.process_external_read(outcome)?;
             } else {
-                let is_block = number == ModbusFunction::SetHoldingsBulk.byte();
                 let outcome = match frame.get_external_write() {
-                    Ok(Write::Words(write)) => map.write(write.address, write.data, is_block),
+                    Ok(Write::Words(write)) => map.write(write.address, write.data),
                     Ok(Write::Bits(_)) => Err(ErrorKind::IllegalDataAddress),
                     Err(error) => Err(error),
                 };

@@ -96,7 +96,8 @@ pub trait Panel {
     /// Sets the parameters from `first` on, all of them or none: each within its range, and together a valid set.
     ///
     /// # Errors
-    /// A [`Refusal`]; nothing is changed then. An axis that is on refuses with [`Refusal::AxisOn`].
+    /// A [`Refusal`]; nothing is changed then: [`Refusal::UnknownParameter`] if the list ends before, [`Refusal::AxisOn`] if
+    /// the axis is on.
     fn set_parameters(&mut self, first: u16, values: &[f64]) -> Result<(), Refusal>;
 
     /// Keeps all parameters in the store. It returns when they are there.
