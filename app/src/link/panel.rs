@@ -37,6 +37,12 @@ impl<F: NorFlash> Panel for Link<F> {
                 max,
                 default,
             }),
+            Ok(Reply::Word { at, words, .. }) => Some(Parameter {
+                value: f64::from(at),
+                min: 0.0,
+                max: f64::from(words.saturating_sub(1)),
+                default: 0.0,
+            }),
             _ => None,
         }
     }

@@ -1,7 +1,6 @@
 //! Which parameters there are, in a number.
 
-use leadscrew::parameter_table::ParameterTable;
-use leadscrew::params::{AxisParams, SectionVisitor};
+use leadscrew::settings::{Key, Number, Settings, Values};
 
 use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
 
@@ -13,7 +12,7 @@ const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 pub struct ParameterList {
     /// How many there are.
     pub count: u16,
-    /// CRC-32 (that of zip) of `section.name` of each with a line feed behind, in order.
+    /// CRC-32 (that of zip) of the name of each, section and all, with a line feed behind, in order.
     pub checksum: u32,
 }
 
@@ -22,27 +21,37 @@ struct Names<'c> {
     digest: Digest<'c, u32, NoTable>,
 }
 
-impl SectionVisitor for Names<'_> {
-    fn section<T: ParameterTable>(&mut self, section: &'static str, _: &mut T) {
-        for field in T::FIELDS {
-            for part in [section, ".", field.name, "\n"] {
-                self.digest.update(part.as_bytes());
-            }
-            self.count = self.count.saturating_add(1);
+impl Names<'_> {
+    fn note(&mut self, key: Key) {
+        for part in key.parts().into_iter().chain(["\n"]) {
+            self.digest.update(part.as_bytes());
         }
+        self.count = self.count.saturating_add(1);
+    }
+}
+
+impl Values for Names<'_> {
+    fn number(&mut self, key: Key, _: &Number, value: f64) -> f64 {
+        self.note(key);
+        value
+    }
+
+    fn word(&mut self, key: Key, _: &[&'static str], value: &'static str) -> &'static str {
+        self.note(key);
+        value
     }
 }
 
 impl ParameterList {
-    /// The list of `params`.
+    /// The list of all settings.
     #[must_use]
-    pub fn of(params: &AxisParams) -> Self {
+    pub fn of(settings: &Settings) -> Self {
         let mut names = Names {
             count: 0,
             digest: CRC.digest(),
         };
-        let mut params = *params;
-        params.visit_sections(&mut names);
+        let mut settings = *settings;
+        settings.visit(&mut names);
         Self {
             count: names.count,
             checksum: names.digest.finalize(),

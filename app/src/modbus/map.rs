@@ -155,7 +155,7 @@ impl<P: Panel> Map<'_, P> {
 /// The exception by which a refusal is told; its number is in the register `last_refusal`.
 fn exception(refusal: Refusal) -> ErrorKind {
     match refusal {
-        Refusal::UnknownParameter => ErrorKind::IllegalDataAddress,
+        Refusal::UnknownParameter | Refusal::WrongType => ErrorKind::IllegalDataAddress,
         Refusal::ParameterOutOfRange | Refusal::Inconsistent => ErrorKind::IllegalDataValue,
         Refusal::AxisOn | Refusal::Busy | Refusal::QueueFull | Refusal::StillMoving => {
             ErrorKind::SlaveDeviceBusy

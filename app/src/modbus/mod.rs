@@ -28,7 +28,7 @@ pub use panel::{Panel, Parameter, ProbeLatch, View};
 pub use words::Words;
 
 use heapless::Vec;
-use leadscrew::params::AxisParams;
+use leadscrew::settings::Settings;
 use rmodbus::consts::{ModbusErrorCode, ModbusFunction};
 use rmodbus::server::{ModbusFrame, Read, Write};
 use rmodbus::{ErrorKind, ModbusProto, guess_request_frame_len};
@@ -61,12 +61,12 @@ struct Server {
 impl Modbus {
     /// The unit of an axis with parameters like `params`; only their names matter here.
     #[must_use]
-    pub fn new(config: Config, params: &AxisParams) -> Self {
+    pub fn new(config: Config, settings: &Settings) -> Self {
         Self {
             unit: config.unit(),
             line: Line::new(config),
             server: Server {
-                list: ParameterList::of(params),
+                list: ParameterList::of(settings),
                 last_refusal: 0,
                 taken: 0,
                 reply: Vec::new(),

@@ -90,7 +90,7 @@ pub trait Panel {
     /// How it stands; asked once for a request, so that all values of a reply are of one tick.
     fn view(&self) -> View;
 
-    /// The parameter at `index` of the list of the link.
+    /// The parameter at `index` of the list of the link; of one that is a word, its place among its words.
     fn parameter(&mut self, index: u16) -> Option<Parameter>;
 
     /// Sets the parameters from `first` on, all of them or none: each within its range, and together a valid set.

@@ -26,7 +26,7 @@ fn seen(axis: &Axis<'_>) -> View {
 
 #[test]
 fn an_axis_that_is_pushed_away_tells_where_and_why_it_stopped() {
-    let params = params();
+    let mut params = params();
     let mut axis = Axis::new(params.validate().unwrap());
     let mut unit = Unit::of(Fake {
         params,

@@ -1,19 +1,19 @@
 //! An axis for the line to tell of, and a line to ask it over.
 
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::params::AxisParams;
-use leadscrew::protocol::parameters::{Which, parameter, write};
+use leadscrew::protocol::parameters::{NewValue, Which, parameter, write};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::service::Seen;
+use leadscrew::settings::Settings;
 use leadscrew::units::AxisScale;
 pub use leadscrew_app::modbus::Panel;
 use leadscrew_app::modbus::{Config, Modbus, Parameter, View};
 
 pub const UNIT: u8 = 7;
 
-pub fn params() -> AxisParams {
-    AxisParams::new(EstimatorConfig::by_name("simple").unwrap().unwrap())
+pub fn params() -> Settings {
+    Settings::new(EstimatorConfig::by_name("simple").unwrap().unwrap())
 }
 
 /// An axis that stands, off.
@@ -34,7 +34,7 @@ pub fn view() -> View {
 /// What it says it is; parameters as the link has them.
 pub struct Fake {
     pub view: View,
-    pub params: AxisParams,
+    pub params: Settings,
     pub saved: u32,
     pub store: Result<(), Refusal>,
 }
@@ -69,6 +69,12 @@ impl Panel for Fake {
                 max,
                 default,
             }),
+            Ok(Reply::Word { at, words, .. }) => Some(Parameter {
+                value: f64::from(at),
+                min: 0.0,
+                max: f64::from(words - 1),
+                default: 0.0,
+            }),
             _ => None,
         }
     }
@@ -76,7 +82,7 @@ impl Panel for Fake {
     fn set_parameters(&mut self, first: u16, values: &[f64]) -> Result<(), Refusal> {
         let mut params = self.params;
         for (index, value) in (first..).zip(values) {
-            write(&mut params, Which::At(index), *value)?;
+            write(&mut params, Which::At(index), NewValue::Number(*value))?;
         }
         params.validate().map_err(|_| Refusal::Inconsistent)?;
         self.params = params;

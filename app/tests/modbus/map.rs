@@ -32,6 +32,7 @@ fn busy() -> View {
     };
     View {
         seen: Seen {
+            count: -7,
             tick: 0xfedc_ba98,
             state: State::Fault,
             enabled: true,

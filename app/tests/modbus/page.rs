@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use leadscrew::parameter_table::ParameterTable;
-use leadscrew::params::SectionVisitor;
+use leadscrew::settings::{Key, Number, Values};
 use leadscrew_app::modbus::bits::{BITS, FAULTS, NUMBERS, STATUS, WARNINGS};
 use leadscrew_app::modbus::map::{
     BLOCK, DEFAULTS, MAXIMA, MINIMA, SAVE, SAVE_KEY, VALUES, WORDS_PER_PARAMETER,
@@ -15,19 +14,27 @@ use crate::fake::params;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/modbus.md");
 
 #[derive(Default)]
-struct Names(Vec<(String, &'static str)>);
+struct Names(Vec<(String, String)>);
 
-impl SectionVisitor for Names {
-    fn section<T: ParameterTable>(&mut self, section: &'static str, _: &mut T) {
-        let fields = T::FIELDS.iter();
-        let named = fields.map(|field| (format!("{section}.{}", field.name), field.unit));
-        self.0.extend(named);
+impl Values for Names {
+    fn number(&mut self, key: Key, number: &Number, value: f64) -> f64 {
+        self.0.push((key.to_string(), number.unit.to_owned()));
+        value
+    }
+
+    fn word(&mut self, key: Key, words: &[&'static str], value: &'static str) -> &'static str {
+        let words: Vec<_> = (0..)
+            .zip(words)
+            .map(|(at, word)| format!("{at} {word}"))
+            .collect();
+        self.0.push((key.to_string(), words.join(", ")));
+        value
     }
 }
 
-fn parameters() -> Vec<(String, &'static str)> {
+fn parameters() -> Vec<(String, String)> {
     let mut names = Names::default();
-    params().visit_sections(&mut names);
+    params().visit(&mut names);
     names.0
 }
 

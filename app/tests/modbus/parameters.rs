@@ -30,7 +30,7 @@ fn refused(unit: &mut Unit, address: u16, words: &[u16], exception: [u8; 2], rea
 #[test]
 fn every_parameter_is_read_to_the_last_bit_with_its_range() {
     let mut unit = Unit::default();
-    unit.panel.params.motion.counts_per_mm = 1.0 / 3.0;
+    unit.panel.params.axis.motion.counts_per_mm = 1.0 / 3.0;
     for index in 0..names().len() as u16 {
         let parameter = unit.panel.parameter(index).unwrap();
         let read = [1000, 2000, 3000, 4000].map(|base| unit.read(3, base + 4 * index, 4));
@@ -57,7 +57,7 @@ fn a_parameter_is_written_while_the_axis_is_off() {
     let mut unit = Unit::default();
     let address = place("motion.max_feed_mm_per_min");
     assert_eq!(unit.write(address, &words(8000.1)), asking(16, address, 4));
-    assert_eq!(unit.panel.params.motion.max_feed_mm_per_min, 8000.1);
+    assert_eq!(unit.panel.params.axis.motion.max_feed_mm_per_min, 8000.1);
     unit.panel.view.seen.state = State::Fault;
     assert_eq!(unit.write(address, &words(8000.2)), asking(16, address, 4));
     assert_eq!(unit.read(4, LAST_REFUSAL, 1), [0]);
@@ -78,7 +78,7 @@ fn parameters_that_go_together_are_written_in_one_request() {
     );
     let both = [words(100.0), words(200.0)].concat();
     assert_eq!(unit.write(low, &both), asking(16, low, 8));
-    let motion = &unit.panel.params.motion;
+    let motion = &unit.panel.params.axis.motion;
     assert_eq!(
         [motion.travel_low_mm, motion.travel_high_mm],
         [100.0, 200.0]
@@ -180,7 +180,8 @@ fn nothing_else_is_written() {
         behind - 4,
         &last,
         ILLEGAL_ADDRESS,
-        Refusal::UnknownParameter,
+        // The last one is a word.
+        Refusal::WrongType,
     );
 }
 
