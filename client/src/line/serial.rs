@@ -1,0 +1,65 @@
+//! A serial port.
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serial2::SerialPort;
+
+use super::{Line, PATIENCE, WRITE_PATIENCE, read};
+
+/// Baud rate of a serial port unless another one is asked for: the rate of the boards.
+pub const DEFAULT_BAUD: u32 = 921_600;
+
+/// A serial port with 8 data bits, no parity, one stop bit and no flow control. Its clock is the computer's.
+#[derive(Debug)]
+pub struct SerialLine {
+    port: SerialPort,
+    name: String,
+    opened: Instant,
+}
+
+impl SerialLine {
+    /// Opens the port at `path` with `baud` bits a second.
+    ///
+    /// # Errors
+    /// Of the system: there is none, it is in use, or may not be opened.
+    pub fn open(path: &Path, baud: u32) -> io::Result<Self> {
+        let mut port = SerialPort::open(path, baud)?;
+        port.set_read_timeout(PATIENCE)?;
+        port.set_write_timeout(WRITE_PATIENCE)?;
+        // What lay in the system's buffers belongs to whoever had the port before.
+        port.discard_buffers()?;
+        Ok(Self {
+            port,
+            name: path.display().to_string(),
+            opened: Instant::now(),
+        })
+    }
+
+    /// The serial ports of this computer, by name.
+    #[must_use]
+    pub fn ports() -> Vec<String> {
+        let found = SerialPort::available_ports().unwrap_or_default();
+        let mut ports: Vec<_> = found
+            .into_iter()
+            .map(|port| port.display().to_string())
+            .collect();
+        ports.sort();
+        ports
+    }
+}
+
+impl Line for SerialLine {
+    fn exchange(&mut self, out: &[u8], received: &mut Vec<u8>) -> io::Result<Duration> {
+        if !out.is_empty() {
+            self.port.write_all(out)?;
+        }
+        read(received, |buffer| self.port.read(buffer))?;
+        Ok(self.opened.elapsed())
+    }
+
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+}
