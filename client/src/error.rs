@@ -178,6 +178,14 @@ impl Error {
         )
     }
 
+    /// The same refusal with other words for what was asked.
+    pub(crate) fn asked(mut self, asked: &str) -> Self {
+        if let Self::Refused(refused) = &mut self {
+            asked.clone_into(&mut refused.asked);
+        }
+        self
+    }
+
     /// The refusal, where it is one that is known.
     #[must_use]
     pub const fn refusal(&self) -> Option<Refusal> {

@@ -25,8 +25,8 @@ mod options;
 mod port;
 mod status;
 
-pub use axis::{Axis, Parameter, Records};
-pub use connection::Connection;
+pub use axis::{Axis, FaultPage, Kind, Parameter, Records, Samples, Stored, TickCounters, Value};
+pub use connection::{Connection, Sample};
 pub use error::{Error, Refused};
 pub use identity::Identity;
 pub use line::{DEFAULT_BAUD, Line, SerialLine, TcpLine};

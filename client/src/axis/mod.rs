@@ -3,9 +3,11 @@
 mod motion;
 mod parameters;
 mod records;
+mod store;
 
-pub use parameters::Parameter;
-pub use records::Records;
+pub use parameters::{Parameter, Value};
+pub use records::{Records, Samples};
+pub use store::{FaultPage, Kind, Stored, TickCounters};
 
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;

@@ -157,7 +157,7 @@ impl Axis {
             .iter()
             .filter_map(|name| self.parameter_at(name).ok());
         let told: Vec<_> = found
-            .map(|limit| format!("{} is {} {}", limit.name, limit.value, limit.unit))
+            .map(|limit| format!("{} is {}", limit.name, limit.value))
             .collect();
         if !told.is_empty() {
             refused.detail = format!("Here {}.", told.join(", "));

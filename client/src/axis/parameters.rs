@@ -13,45 +13,98 @@ const ALIKE: f64 = 0.7;
 /// A parameter of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Section and name, with a point between them.
+    /// Section and name, with a point between them; the name alone where it has no section.
     pub name: String,
-    /// Its unit, for people.
-    pub unit: String,
-    /// Its value.
-    pub value: f64,
-    /// Smallest value allowed.
-    pub min: f64,
-    /// Largest value allowed.
-    pub max: f64,
-    /// What it is if nobody sets it.
-    pub default: f64,
+    /// What it is.
+    pub value: Value,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number {
+        /// The number.
+        value: f64,
+        /// Its unit, for people.
+        unit: String,
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+        /// What it is if nobody sets it.
+        default: f64,
+    },
+    /// One of a few words.
+    Word(String),
 }
 
 impl Parameter {
+    /// Its value if it is a number.
+    #[must_use]
+    pub const fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Number { value, .. } => Some(value),
+            Value::Word(_) => None,
+        }
+    }
+
     fn of(reply: &Reply<'_>) -> Option<(Self, u16)> {
-        let Reply::Parameter {
-            count,
-            section,
-            name,
-            unit,
-            value,
-            min,
-            max,
-            default,
-            ..
-        } = *reply
-        else {
-            return None;
+        let (section, name, count) = match *reply {
+            Reply::Parameter {
+                section,
+                name,
+                count,
+                ..
+            }
+            | Reply::Word {
+                section,
+                name,
+                count,
+                ..
+            } => (section, name, count),
+            _ => return None,
         };
-        let parameter = Self {
-            name: format!("{section}.{name}"),
-            unit: unit.to_owned(),
-            value,
-            min,
-            max,
-            default,
+        let name = if section.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{section}.{name}")
         };
-        Some((parameter, count))
+        let value = Value::of(reply)?;
+        Some((Self { name, value }, count))
+    }
+}
+
+impl Value {
+    fn of(reply: &Reply<'_>) -> Option<Self> {
+        Some(match *reply {
+            Reply::Parameter {
+                unit,
+                value,
+                min,
+                max,
+                default,
+                ..
+            } => Self::Number {
+                value,
+                unit: unit.to_owned(),
+                min,
+                max,
+                default,
+            },
+            Reply::Word { word, .. } => Self::Word(word.to_owned()),
+            _ => return None,
+        })
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number { value, unit, .. } if unit.is_empty() => write!(f, "{value}"),
+            Self::Number { value, unit, .. } => write!(f, "{value} {unit}"),
+            Self::Word(word) => f.write_str(word),
+        }
     }
 }
 
@@ -86,34 +139,56 @@ impl Axis {
         }
     }
 
-    /// Sets a parameter, while the axis is off.
+    /// Sets a parameter that is a number, while the axis is off; in the edit, if one is open.
     ///
     /// # Errors
     /// [`Error::UnknownParameter`] with the nearest name, [`Error::ParameterOutOfRange`] with range and unit,
-    /// [`Error::Refused`] while the axis is on or where it does not go with the others.
+    /// [`Error::Refused`] while the axis is on, where it does not go with the others, or where it is a word.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Error> {
         let parameter = self.parameter(name)?;
-        let out_of_range = || Error::ParameterOutOfRange {
-            name: name.to_owned(),
-            value,
-            unit: parameter.unit.clone(),
-            min: parameter.min,
-            max: parameter.max,
-        };
-        if !(parameter.min..=parameter.max).contains(&value) {
-            return Err(out_of_range());
+        let mut asked = format!("{name} = {value}");
+        if let Value::Number { unit, min, max, .. } = parameter.value {
+            if !(min..=max).contains(&value) {
+                return Err(Error::ParameterOutOfRange {
+                    name: name.to_owned(),
+                    value,
+                    unit,
+                    min,
+                    max,
+                });
+            }
+            asked = format!("{asked} {unit}");
         }
         let done = self.order(&Request::SetParameter { name, value });
-        match done {
-            Err(Error::Refused(mut refused)) => {
-                if refused.refusal() == Some(Refusal::ParameterOutOfRange) {
-                    return Err(out_of_range());
-                }
-                refused.asked = format!("{name} = {value} {}", parameter.unit);
-                Err(Error::Refused(refused))
-            }
-            done => done,
+        done.map_err(|error| error.asked(&asked))
+    }
+
+    /// Sets a parameter that is one of a few words, while the axis is off; in the edit, if one is open.
+    ///
+    /// # Errors
+    /// [`Error::UnknownParameter`] with the nearest name; [`Error::Refused`] for a word that it does not know, and as of
+    /// [`Self::set_parameter`].
+    pub fn set_word(&mut self, name: &str, word: &str) -> Result<(), Error> {
+        self.parameter(name)?;
+        let done = self.order(&Request::SetWord { name, word });
+        done.map_err(|error| error.asked(&format!("{name} = {word}")))
+    }
+
+    /// Sets many parameters at once: `edit` sets them in a copy, which is validated as a whole, and taken or dropped.
+    ///
+    /// # Errors
+    /// Those of `edit`; [`Error::Refused`] if the whole is not consistent. Nothing is changed then.
+    pub fn edit_parameters(
+        &mut self,
+        edit: impl FnOnce(&mut Self) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        self.order(&Request::EditParameters {})?;
+        let done = edit(self).and_then(|()| self.order(&Request::TakeParameters {}));
+        if done.is_err() {
+            // An axis that is lost drops it with the session.
+            let _ = self.order(&Request::DropParameters {});
         }
+        done
     }
 
     pub(super) fn parameter_at(&mut self, name: &str) -> Result<Parameter, Error> {

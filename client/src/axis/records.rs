@@ -6,6 +6,7 @@ use leadscrew::protocol::request::Request;
 use leadscrew::telemetry::Record;
 
 use super::Axis;
+use crate::connection::{Connection, Sample};
 use crate::error::Error;
 
 impl Axis {
@@ -18,6 +19,44 @@ impl Axis {
         self.connection
             .order(&Request::Subscribe { every })
             .map(drop)
+    }
+
+    /// Asks for samples of signals in every `every` ticks, 8 signals at most by their numbers; 0 ticks end them.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]
+    pub fn stream(&mut self, every: u16, signals: &[u8]) -> Result<(), Error> {
+        let request = Request::Stream { every, signals };
+        self.connection.order(&request).map(drop)
+    }
+
+    /// The samples, oldest first; waited for as of [`Self::records`].
+    pub const fn samples(&mut self, patience: Duration) -> Samples<'_> {
+        Samples {
+            axis: self,
+            patience,
+        }
+    }
+
+    /// Waits for what `take` finds.
+    fn next_of<T>(
+        &mut self,
+        patience: Duration,
+        take: fn(&mut Connection) -> Option<T>,
+    ) -> Option<Result<T, Error>> {
+        let connection = &mut self.connection;
+        let until = connection.now() + patience;
+        loop {
+            if let Some(one) = take(connection) {
+                return Some(Ok(one));
+            }
+            if connection.now() >= until {
+                return None;
+            }
+            if let Err(error) = connection.go_on() {
+                return Some(Err(error));
+            }
+        }
     }
 
     /// The records, oldest first, in the units of the axis; each is waited for, on the line's clock, for `patience`.
@@ -40,7 +79,7 @@ pub struct Records<'a> {
 impl Records<'_> {
     /// Records of this session that were lost so far: on the line, or because nobody took them in time.
     #[must_use]
-    pub fn lost(&self) -> u32 {
+    pub const fn lost(&self) -> u32 {
         self.axis.connection.records_lost()
     }
 }
@@ -49,18 +88,29 @@ impl Iterator for Records<'_> {
     type Item = Result<Record, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let connection = &mut self.axis.connection;
-        let until = connection.now() + self.patience;
-        loop {
-            if let Some(record) = connection.take_record() {
-                return Some(Ok(record));
-            }
-            if connection.now() >= until {
-                return None;
-            }
-            if let Err(error) = connection.go_on() {
-                return Some(Err(error));
-            }
-        }
+        self.axis.next_of(self.patience, Connection::take_record)
+    }
+}
+
+/// Samples of signals of an axis. It ends when none comes within the patience.
+#[derive(Debug)]
+pub struct Samples<'a> {
+    axis: &'a mut Axis,
+    patience: Duration,
+}
+
+impl Samples<'_> {
+    /// Frames of samples that were lost on the line so far, and samples that nobody took in time.
+    #[must_use]
+    pub const fn lost(&self) -> u32 {
+        self.axis.connection.samples_lost()
+    }
+}
+
+impl Iterator for Samples<'_> {
+    type Item = Result<Sample, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.axis.next_of(self.patience, Connection::take_sample)
     }
 }

@@ -81,6 +81,11 @@ impl Connection {
         }
     }
 
+    /// The axis is off, and knows of no lease any more.
+    pub(crate) const fn forget_lease(&mut self) {
+        self.lease = Lease::Free;
+    }
+
     pub(super) fn release_shortly(&mut self) -> Result<(), Error> {
         self.options.timing.lost = self.options.timing.lost.min(GOODBYE);
         self.release_lease()
@@ -128,6 +133,9 @@ impl Connection {
                 | Request::Jog { .. }
                 | Request::Resume {}
                 | Request::Override { .. }
+                | Request::Select { .. }
+                | Request::StartExperiment { .. }
+                | Request::LearnRun { .. }
         );
         match self.lease {
             Lease::Held { .. } => Ok(()),

@@ -1,6 +1,5 @@
 //! Opening a session.
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use leadscrew::protocol::VERSION;
@@ -9,7 +8,7 @@ use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
 
-use super::{Connection, Lease, Said};
+use super::{Connection, Kept, Lease, Said};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::line::Line;
@@ -35,8 +34,8 @@ impl Connection {
             seen: 0,
             lease: Lease::Free,
             is_stopping: false,
-            records: VecDeque::new(),
-            records_dropped: 0,
+            records: Kept::default(),
+            samples: Kept::default(),
             frame: Vec::new(),
             received: Vec::new(),
         };
@@ -55,7 +54,8 @@ impl Connection {
         if self.lease.is_held() {
             self.lease = Lease::Lapsed;
         }
-        self.records.clear();
+        self.records = Kept::default();
+        self.samples = Kept::default();
         self.hello()
     }
 

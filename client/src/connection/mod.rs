@@ -11,6 +11,7 @@ use leadscrew::protocol::client::{Answer, Client};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
+use leadscrew::protocol::stream::MAX_SIGNALS;
 use leadscrew::telemetry::Record;
 
 use crate::error::{Error, Refused};
@@ -19,8 +20,10 @@ use crate::line::Line;
 use crate::options::Options;
 use control::Lease;
 
-/// Most records kept for whoever takes them.
-const MOST_RECORDS: usize = 1 << 16;
+/// Most records, and samples, kept for whoever takes them.
+const MOST_KEPT: usize = 1 << 16;
+/// How many times longer an axis may take over what writes its flash.
+const FLASH_IS_SLOWER: u32 = 10;
 
 /// A session with an axis.
 ///
@@ -42,9 +45,8 @@ pub struct Connection {
     seen: u32,
     lease: Lease,
     is_stopping: bool,
-    records: VecDeque<Record>,
-    /// Records that nobody took in time.
-    records_dropped: u32,
+    records: Kept<Record>,
+    samples: Kept<Sample>,
     frame: Vec<u8>,
     received: Vec<u8>,
 }
@@ -57,6 +59,36 @@ impl std::fmt::Debug for Connection {
             .field("now", &self.now)
             .field("lease", &self.lease)
             .finish_non_exhaustive()
+    }
+}
+
+/// A sample of signals: its tick, and the signals in the order of the request; 0 behind the last one.
+pub type Sample = (u32, [i32; MAX_SIGNALS]);
+
+/// What came unasked, until somebody takes it.
+#[derive(Debug)]
+struct Kept<T> {
+    queue: VecDeque<T>,
+    /// What nobody took in time.
+    dropped: u32,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self {
+            queue: VecDeque::new(),
+            dropped: 0,
+        }
+    }
+}
+
+impl<T> Kept<T> {
+    fn keep(&mut self, one: T) {
+        if self.queue.len() == MOST_KEPT {
+            self.queue.pop_front();
+            self.dropped = self.dropped.saturating_add(1);
+        }
+        self.queue.push_back(one);
     }
 }
 
@@ -155,6 +187,7 @@ impl Connection {
         let made = self.client.request(request);
         frame.extend_from_slice(made.map_err(|_| Error::TooLong { asked: asked() })?);
         let begin = self.now;
+        let patience = self.patience_for(request);
         let mut sent: Option<Duration> = None;
         let answer = loop {
             let is_due =
@@ -169,7 +202,7 @@ impl Connection {
                 Err(error) => break Err(error),
             }
             let after = self.now.saturating_sub(begin);
-            if after >= self.options.timing.lost {
+            if after >= patience {
                 break Err(Error::Lost {
                     port: self.line.name(),
                     asked: asked(),
@@ -179,6 +212,17 @@ impl Connection {
         };
         self.frame = frame;
         answer
+    }
+
+    const fn patience_for(&self, request: &Request<'_>) -> Duration {
+        let lost = self.options.timing.lost;
+        match request {
+            Request::SaveParameters {}
+            | Request::SaveBytes { .. }
+            | Request::Erase { .. }
+            | Request::TakeMap {} => lost.saturating_mul(FLASH_IS_SLOWER),
+            _ => lost,
+        }
     }
 
     /// One exchange of the line; what is said to the last request, if it came.
@@ -195,18 +239,18 @@ impl Connection {
         })?;
         self.now = self.now.max(now);
         let (seen, nonce) = (&mut self.seen, self.nonce);
-        let (records, dropped) = (&mut self.records, &mut self.records_dropped);
+        let (records, samples) = (&mut self.records, &mut self.samples);
         let sequence = self.client.sequence();
         let mut said = None;
         self.client.receive(&self.received, |answer| match answer {
             Answer::Record(record) => {
                 note(seen, record.tick);
-                if records.len() == MOST_RECORDS {
-                    records.pop_front();
-                    *dropped = dropped.saturating_add(1);
-                }
-                records.push_back(record);
+                records.keep(record);
             }
+            Answer::Samples(frame) => frame.iter().for_each(|sample| {
+                note(seen, sample.0);
+                samples.keep(sample);
+            }),
             // An answer to a hello of before, out of some buffer.
             Answer::Reply(_, Reply::Hello { nonce: of, .. }) if of != nonce => {}
             Answer::Reply(of, reply) => {
@@ -224,16 +268,28 @@ impl Connection {
         Ok(said)
     }
 
-    /// Records that came and that nobody has taken yet, oldest first.
-    pub(crate) fn take_record(&mut self) -> Option<Record> {
-        self.records.pop_front()
+    /// The oldest record that came and that nobody has taken yet.
+    pub fn take_record(&mut self) -> Option<Record> {
+        self.records.queue.pop_front()
+    }
+
+    /// The same of samples of signals.
+    pub fn take_sample(&mut self) -> Option<Sample> {
+        self.samples.queue.pop_front()
     }
 
     /// Records of this session that were lost: on the line, or because nobody took them.
-    pub(crate) fn records_lost(&self) -> u32 {
-        self.client
-            .records_lost()
-            .saturating_add(self.records_dropped)
+    #[must_use]
+    pub const fn records_lost(&self) -> u32 {
+        let lost = self.client.records_lost();
+        lost.saturating_add(self.records.dropped)
+    }
+
+    /// Frames of samples that were lost on the line, and samples that nobody took.
+    #[must_use]
+    pub const fn samples_lost(&self) -> u32 {
+        let lost = self.client.samples_lost();
+        lost.saturating_add(self.samples.dropped)
     }
 }
 
@@ -254,9 +310,10 @@ const fn note(seen: &mut u32, tick: u32) {
 /// The tick that a reply tells of.
 const fn tick_of(reply: &Reply<'_>) -> Option<u32> {
     match *reply {
-        Reply::Ack { tick } | Reply::Refused { tick, .. } | Reply::Status { tick, .. } => {
-            Some(tick)
-        }
+        Reply::Ack { tick }
+        | Reply::Refused { tick, .. }
+        | Reply::Status { tick, .. }
+        | Reply::Experiment { tick, .. } => Some(tick),
         _ => None,
     }
 }

@@ -16,21 +16,20 @@ use std::time::Duration;
 
 use leadscrew::axis::{Axis as CoreAxis, Outputs};
 use leadscrew::hal::Reference;
-use leadscrew::params::AxisParams;
 use leadscrew::protocol::service::{Seen, Service};
 use leadscrew::supervisor::State;
 use leadscrew::telemetry::Record;
 use leadscrew_client::{Axis, Line, Options};
 use leadscrew_hal_mock::board::{Board, BoardParams};
 use leadscrew_hal_mock::machine::MachineParams;
-use rig::{IDENTITY, Way, params};
+use rig::{IDENTITY, Way, settings};
 
 /// An axis, its machine and its end of the link, at 1 kHz.
 pub struct Bench {
     pub board: Board,
     pub way: Way,
     pub service: Service,
-    pub params: AxisParams,
+    pub counts_per_mm: f64,
     /// Setpoints, d, and whether the axis was enabled, of all ticks.
     pub trace: Vec<(f64, bool)>,
     /// Inputs of the axis's board on top of the machine's.
@@ -39,19 +38,19 @@ pub struct Bench {
 
 impl Bench {
     pub fn new() -> Self {
-        let params = params();
+        let mut settings = settings();
         let machine = MachineParams::z_16k20f3();
         Self {
             board: Board::new(&BoardParams::default(), &machine, 1000.0, 1).unwrap(),
             way: Way {
-                axis: CoreAxis::new(params.validate().unwrap()),
+                axis: CoreAxis::new(settings.validate().unwrap()),
                 enable: false,
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
             },
-            service: Service::new(IDENTITY, &params).unwrap(),
-            params,
+            service: Service::new(IDENTITY, &settings).unwrap(),
+            counts_per_mm: settings.axis.motion.counts_per_mm,
             trace: Vec::new(),
             emergency_stop: false,
         }
@@ -67,7 +66,7 @@ impl Bench {
 
     /// mm to which the setpoints of all ticks came, smallest and largest.
     pub fn extent_mm(&self) -> (f64, f64) {
-        let mm = |d: f64| self.params.motion.mm_per_rev / self.params.motion.counts_per_rev * d;
+        let mm = |setpoint: f64| setpoint / self.counts_per_mm;
         let all = self.trace.iter().map(|(setpoint, _)| mm(*setpoint));
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
             (low.min(at), high.max(at))
@@ -80,7 +79,8 @@ impl Bench {
         let mut inputs = self.board.inputs(self.way.enable, Reference::default());
         inputs.lines.emergency_stop |= self.emergency_stop;
         let outputs = *self.way.axis.step(&inputs);
-        self.trace.push((outputs.setpoint.position.to_num(), outputs.enabled));
+        self.trace
+            .push((outputs.setpoint.position.to_num(), outputs.enabled));
         let seen = Seen::of(&self.way.axis);
         if let Some(frame) = self.service.record(&Record::new(&outputs)) {
             to_tool.extend_from_slice(frame);

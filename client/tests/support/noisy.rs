@@ -95,9 +95,15 @@ impl Way {
                 arrives.extend(frame);
                 continue;
             }
-            let mut is = |share: f64| (next(random) >> 11) as f64 / (1_u64 << 53) as f64 <= share && share > 0.0;
-            let [drops, flips, doubles, delays] =
-                [is(faults.drops), is(faults.flips), is(faults.doubles), is(faults.delays)];
+            let mut is = |share: f64| {
+                (next(random) >> 11) as f64 / (1_u64 << 53) as f64 <= share && share > 0.0
+            };
+            let [drops, flips, doubles, delays] = [
+                is(faults.drops),
+                is(faults.flips),
+                is(faults.doubles),
+                is(faults.delays),
+            ];
             done.frames += 1;
             done.dropped += u32::from(drops);
             done.flipped += u32::from(flips);
@@ -130,7 +136,12 @@ impl Way {
 
 impl<L: Line> Line for Noisy<L> {
     fn exchange(&mut self, out: &[u8], received: &mut Vec<u8>) -> io::Result<Duration> {
-        let Self { faults, random, done, .. } = self;
+        let Self {
+            faults,
+            random,
+            done,
+            ..
+        } = self;
         let out = self.to_axis.pass(out, self.now, faults, random, done);
         let mut came = Vec::new();
         self.now = self.line.exchange(&out, &mut came)?;
