@@ -136,9 +136,9 @@ impl Axis {
         let advice = "Watch it; if it does not stop use the emergency stop";
         let off = |status: &Status| {
             let at_rest = matches!(status.state(), Some(State::Disabled | State::Fault));
-            Ok(at_rest && !status.is_enabled)
+            at_rest && !status.is_enabled
         };
-        self.wait_in_fault_too("not off", advice, off)
+        self.wait_for_end("not off", advice, off)
     }
 
     /// Clears the fault, and waits until it is gone.
@@ -148,8 +148,8 @@ impl Axis {
     pub fn clear_fault(&mut self) -> Result<(), Error> {
         self.order(&Request::ClearFault {})?;
         let advice = "Read the fault and remove its cause";
-        self.wait_in_fault_too("the fault is not gone", advice, |status| {
-            Ok(status.fault_number == 0)
+        self.wait_for_end("the fault is not gone", advice, |status| {
+            status.fault_number == 0
         })
         .map(drop)
     }
@@ -168,34 +168,46 @@ impl Axis {
         Ok(())
     }
 
-    /// Waits until `is_done`, which looks at the axis after the last order could show; a fault ends it.
+    /// Waits until `is_done`, which looks at the axis after the last order could show; a fault ends it, and a lease that
+    /// lapses.
     fn wait_for(
         &mut self,
         what: &'static str,
         advice: &'static str,
         mut is_done: impl FnMut(&Status) -> Result<bool, Error>,
     ) -> Result<Status, Error> {
-        self.wait_in_fault_too(what, advice, |status| {
+        self.look_until(what, advice, |connection, status| {
             let is_faulted = status.state() == Some(State::Fault);
-            match status.fault_number {
-                number if is_faulted && number != 0 => Err(Error::Faulted(number)),
-                _ => is_done(status),
+            if is_faulted && status.fault_number != 0 {
+                return Err(Error::Faulted(status.fault_number));
             }
+            connection.check_lapse()?;
+            is_done(status)
         })
     }
 
-    /// The same, whatever faults there are. It gives up when for the time to settle nothing has moved.
-    fn wait_in_fault_too(
+    /// The same for what comes to its end by itself.
+    fn wait_for_end(
         &mut self,
         what: &'static str,
         advice: &'static str,
-        mut is_done: impl FnMut(&Status) -> Result<bool, Error>,
+        is_done: impl Fn(&Status) -> bool,
+    ) -> Result<Status, Error> {
+        self.look_until(what, advice, |_, status| Ok(is_done(status)))
+    }
+
+    /// Looks at the axis until `is_done`. It gives up when for the time to settle nothing has moved.
+    fn look_until(
+        &mut self,
+        what: &'static str,
+        advice: &'static str,
+        mut is_done: impl FnMut(&mut Connection, &Status) -> Result<bool, Error>,
     ) -> Result<Status, Error> {
         let mut begin = self.connection.now();
         loop {
             let status = self.status()?;
             let shows = self.connection.has_begun(status.tick, self.ordered);
-            if shows && is_done(&status)? {
+            if shows && is_done(&mut self.connection, &status)? {
                 return Ok(status);
             }
             // A long move is no failure, nor is a feed hold.

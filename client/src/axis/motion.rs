@@ -83,7 +83,7 @@ impl Axis {
     pub fn stop(&mut self) -> Result<Status, Error> {
         self.order(&Request::Stop {})?;
         let advice = "Watch it; if it does not stop use the emergency stop";
-        self.wait_in_fault_too("not at rest", advice, |status| Ok(status.is_at_rest()))
+        self.wait_for_end("not at rest", advice, Status::is_at_rest)
     }
 
     /// Feed hold: stops and remembers the target. Needs no lease. The stop is not waited for.

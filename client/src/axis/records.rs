@@ -45,7 +45,7 @@ impl Axis {
         take: fn(&mut Connection) -> Option<T>,
     ) -> Option<Result<T, Error>> {
         let connection = &mut self.connection;
-        let until = connection.now() + patience;
+        let until = connection.now().saturating_add(patience);
         loop {
             if let Some(one) = take(connection) {
                 return Some(Ok(one));

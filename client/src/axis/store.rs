@@ -11,6 +11,8 @@ use crate::error::Error;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Bytes written in a request: they fit a frame with all else, and are whole words.
 const CHUNK: usize = 200;
+/// Longest thing that is read back: more than any board has flash for it.
+const MOST: u32 = 1 << 20;
 
 /// A fault with its context, in d (counts of the encoder).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,7 +215,7 @@ impl Axis {
     pub fn read_stored(&mut self, kind: Kind) -> Result<Vec<u8>, Error> {
         let before = self.stored(kind)?;
         let mut bytes = Vec::new();
-        while bytes.len() < before.length as usize {
+        while bytes.len() < before.length.min(MOST) as usize {
             let offset = bytes.len() as u32;
             let request = Request::ReadStored {
                 kind: kind as u8,

@@ -20,8 +20,11 @@ pub(super) enum Lease {
     Free,
     /// Taken, and renewed last at this time of the line.
     Held { renewed: Duration },
-    /// It was taken and has lapsed: the axis has stopped, and nobody was told.
-    Lapsed,
+    /// It was taken and has lapsed: the axis has stopped.
+    Lapsed {
+        /// Whoever waits was told of it.
+        is_told: bool,
+    },
 }
 
 impl Lease {
@@ -44,7 +47,9 @@ impl Connection {
     /// [`Error::Refused`] with [`Refusal::LeaseHeld`] where another one holds it for longer; those of a lost axis.
     pub fn take_lease(&mut self) -> Result<(), Error> {
         let lease = Duration::from_millis(150);
-        let until = self.now + lease.max(self.options.timing.patience);
+        let until = self
+            .now
+            .saturating_add(lease.max(self.options.timing.patience));
         loop {
             let sent = self.now;
             match self.transact(&Request::TakeLease {}, acknowledged)? {
@@ -139,8 +144,8 @@ impl Connection {
         );
         match self.lease {
             Lease::Held { .. } => Ok(()),
-            Lease::Lapsed if goes_on => Err(Error::LeaseLapsed),
-            Lease::Lapsed | Lease::Free => self.take_lease(),
+            Lease::Lapsed { .. } if goes_on => Err(Error::LeaseLapsed),
+            Lease::Lapsed { .. } | Lease::Free => self.take_lease(),
         }
     }
 
@@ -151,7 +156,7 @@ impl Connection {
     /// [`Error::Refused`], [`Error::LeaseLapsed`], those of a lost axis; [`Error::Interrupted`] instead of an order that
     /// needs the lease.
     pub fn order(&mut self, request: &Request<'_>) -> Result<u32, Error> {
-        let until = self.now + self.options.timing.patience;
+        let until = self.now.saturating_add(self.options.timing.patience);
         loop {
             if request.needs_lease() {
                 self.check_interrupted()?;

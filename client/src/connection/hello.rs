@@ -15,7 +15,7 @@ use crate::line::Line;
 use crate::options::Options;
 
 /// Hellos with another number each, before an axis that takes none is given up.
-const HELLOS: u32 = 3;
+const HELLOS: u32 = 4;
 
 impl Connection {
     /// Opens a session over a line. One that another tool had open is ended by it, and its lease with it.
@@ -52,7 +52,7 @@ impl Connection {
         self.nonce = self.nonce.wrapping_add(1);
         // What was enabled under a lease of the session before stops with it.
         if self.lease.is_held() {
-            self.lease = Lease::Lapsed;
+            self.lease = Lease::Lapsed { is_told: true };
         }
         self.records = Kept::default();
         self.samples = Kept::default();
@@ -69,7 +69,10 @@ impl Connection {
                 Said::Asked((identity, tick)) if identity.protocol == VERSION => {
                     self.identity = identity;
                     self.seen = tick;
-                    return Ok(());
+                    if self.is_fresh()? {
+                        return Ok(());
+                    }
+                    self.nonce = self.nonce.wrapping_add(1);
                 }
                 Said::Asked((identity, _)) => {
                     return Err(Error::ProtocolVersion {
@@ -88,6 +91,12 @@ impl Connection {
         Err(Error::Unexpected {
             asked: "Hello".to_owned(),
         })
+    }
+
+    /// False for a session that was open already, of a tool that began with the same number: its requests are ahead.
+    fn is_fresh(&mut self) -> Result<bool, Error> {
+        let said = self.transact(&Request::Status {}, |_| Some(()))?;
+        Ok(!matches!(said, Said::Refused(number) if number == Refusal::Late as u16))
     }
 }
 

@@ -162,7 +162,7 @@ impl Connection {
             Some(Refusal::NoSession) => Error::Restarted,
             Some(Refusal::OtherSession) => Error::SessionTaken,
             Some(Refusal::LeaseRequired) if self.lease.is_held() => {
-                self.lease = Lease::Lapsed;
+                self.lease = Lease::Lapsed { is_told: false };
                 Error::LeaseLapsed
             }
             _ => Error::Refused(Refused {

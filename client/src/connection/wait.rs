@@ -25,7 +25,7 @@ impl Connection {
     /// # Errors
     /// [`Error::Interrupted`], after the axis was stopped; [`Error::LeaseLapsed`]; those of a lost axis.
     pub fn wait(&mut self, time: Duration) -> Result<(), Error> {
-        let until = self.now + time;
+        let until = self.now.saturating_add(time);
         while self.now < until {
             self.go_on()?;
         }
@@ -34,19 +34,35 @@ impl Connection {
 
     /// One step of waiting.
     pub(crate) fn go_on(&mut self) -> Result<(), Error> {
-        self.check_interrupted()?;
-        let held = self.lease.is_held();
-        self.idle()?;
-        self.renew_if_due()?;
-        if held && self.lease == Lease::Lapsed {
-            return Err(Error::LeaseLapsed);
-        }
-        Ok(())
+        self.step()?;
+        self.check_lapse()
     }
 
-    /// Time between two looks at the axis.
+    /// The same where a lease that lapses does not matter: what is waited for is that the axis stops.
+    fn step(&mut self) -> Result<(), Error> {
+        self.check_interrupted()?;
+        self.idle()?;
+        self.renew_if_due()
+    }
+
+    /// Tells of a lapse of the lease, once.
+    pub(crate) fn check_lapse(&mut self) -> Result<(), Error> {
+        match self.lease {
+            Lease::Lapsed { is_told: false } => {
+                self.lease = Lease::Lapsed { is_told: true };
+                Err(Error::LeaseLapsed)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Lets the time between two looks at the axis pass, whatever becomes of the lease.
     pub(crate) fn wait_a_look(&mut self) -> Result<(), Error> {
-        self.wait(LOOK)
+        let until = self.now.saturating_add(LOOK);
+        while self.now < until {
+            self.step()?;
+        }
+        Ok(())
     }
 
     /// Runs a long computation beside this thread, which keeps the lease meanwhile.
@@ -88,7 +104,7 @@ impl Connection {
 
     fn stop_and_stand(&mut self) -> Result<bool, Error> {
         let ordered = self.order(&Request::Stop {})?;
-        let until = self.now + self.options.timing.settle;
+        let until = self.now.saturating_add(self.options.timing.settle);
         while self.now < until {
             let (tick, state, flags) = self.query(&Request::Status {}, |reply| match *reply {
                 Reply::Status {

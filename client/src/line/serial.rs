@@ -25,14 +25,17 @@ impl SerialLine {
     /// # Errors
     /// Of the system: there is none, it is in use, or may not be opened.
     pub fn open(path: &Path, baud: u32) -> io::Result<Self> {
-        let mut port = SerialPort::open(path, baud)?;
+        Self::over(SerialPort::open(path, baud)?, path.display().to_string())
+    }
+
+    fn over(mut port: SerialPort, name: String) -> io::Result<Self> {
         port.set_read_timeout(PATIENCE)?;
         port.set_write_timeout(WRITE_PATIENCE)?;
         // What lay in the system's buffers belongs to whoever had the port before.
         port.discard_buffers()?;
         Ok(Self {
             port,
-            name: path.display().to_string(),
+            name,
             opened: Instant::now(),
         })
     }
@@ -61,5 +64,35 @@ impl Line for SerialLine {
 
     fn name(&self) -> String {
         self.name.clone()
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_pass_both_ways_and_silence_is_no_error() {
+        let (here, there) = SerialPort::pair().unwrap();
+        let mut line = SerialLine::over(here, "pair".to_owned()).unwrap();
+        let mut received = Vec::new();
+        let before = line.exchange(&[], &mut received).unwrap();
+        assert!(received.is_empty());
+
+        // Zeros, line ends and control characters are bytes like others.
+        let all: Vec<u8> = (0..=255).collect();
+        let mut buffer = vec![0; 256];
+        line.exchange(&all, &mut received).unwrap();
+        there.read_exact(&mut buffer).unwrap();
+        assert_eq!(buffer, all);
+        there.write_all(&all).unwrap();
+        while received.len() < all.len() {
+            assert!(line.exchange(&[], &mut received).unwrap() >= before);
+        }
+        assert_eq!(received, all);
+
+        drop(there);
+        let gone = (0..100).any(|_| line.exchange(&[0], &mut received).is_err());
+        assert!(gone);
     }
 }

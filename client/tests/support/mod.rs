@@ -30,7 +30,7 @@ pub struct Bench {
     pub way: Way,
     pub service: Service,
     pub counts_per_mm: f64,
-    /// Setpoints, d, and whether the axis was enabled, of all ticks.
+    /// Setpoints, d, and whether they moved the axis, of all ticks.
     pub trace: Vec<(f64, bool)>,
     /// Inputs of the axis's board on top of the machine's.
     pub emergency_stop: bool,
@@ -67,7 +67,8 @@ impl Bench {
     /// mm to which the setpoints of all ticks came, smallest and largest.
     pub fn extent_mm(&self) -> (f64, f64) {
         let mm = |setpoint: f64| setpoint / self.counts_per_mm;
-        let all = self.trace.iter().map(|(setpoint, _)| mm(*setpoint));
+        let in_control = self.trace.iter().filter(|(_, in_control)| *in_control);
+        let all = in_control.map(|(setpoint, _)| mm(*setpoint));
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
             (low.min(at), high.max(at))
         })
@@ -79,8 +80,12 @@ impl Bench {
         let mut inputs = self.board.inputs(self.way.enable, Reference::default());
         inputs.lines.emergency_stop |= self.emergency_stop;
         let outputs = *self.way.axis.step(&inputs);
+        let in_control = matches!(
+            outputs.state,
+            State::Ready | State::Moving | State::Stopping
+        );
         self.trace
-            .push((outputs.setpoint.position.to_num(), outputs.enabled));
+            .push((outputs.setpoint.position.to_num(), in_control));
         let seen = Seen::of(&self.way.axis);
         if let Some(frame) = self.service.record(&Record::new(&outputs)) {
             to_tool.extend_from_slice(frame);

@@ -1,7 +1,9 @@
 //! A line that loses, flips, doubles and delays frames, as often as it is told to.
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io;
+use std::rc::Rc;
 use std::time::Duration;
 
 use leadscrew_client::Line;
@@ -39,7 +41,7 @@ pub struct Noisy<L> {
     now: Duration,
     to_axis: Way,
     to_tool: Way,
-    pub done: Done,
+    done: Rc<Cell<Done>>,
 }
 
 /// One direction.
@@ -59,8 +61,15 @@ impl<L: Line> Noisy<L> {
             now: Duration::ZERO,
             to_axis: Way::default(),
             to_tool: Way::default(),
-            done: Done::default(),
+            done: Rc::default(),
         }
+    }
+}
+
+impl<L> Noisy<L> {
+    /// What it has done, also while somebody else has the line.
+    pub fn done(&self) -> Rc<Cell<Done>> {
+        Rc::clone(&self.done)
     }
 }
 
@@ -136,16 +145,15 @@ impl Way {
 
 impl<L: Line> Line for Noisy<L> {
     fn exchange(&mut self, out: &[u8], received: &mut Vec<u8>) -> io::Result<Duration> {
-        let Self {
-            faults,
-            random,
-            done,
-            ..
-        } = self;
-        let out = self.to_axis.pass(out, self.now, faults, random, done);
+        let Self { faults, random, .. } = self;
+        let mut done = self.done.get();
+        let out = self.to_axis.pass(out, self.now, faults, random, &mut done);
         let mut came = Vec::new();
         self.now = self.line.exchange(&out, &mut came)?;
-        let came = self.to_tool.pass(&came, self.now, faults, random, done);
+        let came = self
+            .to_tool
+            .pass(&came, self.now, faults, random, &mut done);
+        self.done.set(done);
         received.extend(came);
         Ok(self.now)
     }
