@@ -110,6 +110,19 @@ fn work_is_done_while_the_lease_is_kept() {
 }
 
 #[test]
+fn an_axis_in_lockstep_waits_for_the_work() {
+    let mut line = BenchLine::new();
+    line.is_lockstep = true;
+    let mut axis = enabled(&line);
+    let ticks = line.bench.borrow().trace.len();
+    let thread = std::thread::current().id();
+    let same = axis.keep_alive_while(|| std::thread::current().id() == thread);
+    assert!(same.unwrap());
+    assert_eq!(line.bench.borrow().trace.len(), ticks);
+    axis.move_and_wait(1.0, 600.0).unwrap();
+}
+
+#[test]
 fn another_tool_takes_the_session_over() {
     let line = BenchLine::new();
     let mut first = enabled(&line);

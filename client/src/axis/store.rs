@@ -1,5 +1,7 @@
 //! What an axis keeps: the fault that stopped it, what its tick counted, what is saved in its flash.
 
+use std::time::Duration;
+
 use crc::{CRC_32_ISO_HDLC, Crc};
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
@@ -11,6 +13,8 @@ use crate::error::Error;
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Bytes written in a request: they fit a frame with all else, and are whole words.
 const CHUNK: usize = 200;
+/// Time after which an axis that restarts does not answer any more.
+const GONE: Duration = Duration::from_millis(100);
 /// Longest thing that is read back: more than any board has flash for it.
 const MOST: u32 = 1 << 20;
 
@@ -273,7 +277,18 @@ impl Axis {
     pub fn restart(&mut self) -> Result<(), Error> {
         self.order(&Request::Restart {})?;
         self.connection.forget_lease();
-        self.reconnect()
+        let until = self
+            .connection
+            .now()
+            .saturating_add(self.connection.options().timing.settle);
+        // It answers before it goes.
+        self.connection.wait(GONE)?;
+        loop {
+            match self.reconnect() {
+                Err(Error::Lost { .. }) if self.connection.now() < until => {}
+                done => return done,
+            }
+        }
     }
 
     /// Words of the work memory, from one on: as many as a reply holds.

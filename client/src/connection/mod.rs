@@ -2,16 +2,15 @@
 
 mod control;
 mod hello;
+mod kept;
 mod wait;
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use leadscrew::protocol::client::{Answer, Client};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
-use leadscrew::protocol::stream::MAX_SIGNALS;
 use leadscrew::telemetry::Record;
 
 use crate::error::{Error, Refused};
@@ -19,9 +18,9 @@ use crate::identity::Identity;
 use crate::line::Line;
 use crate::options::Options;
 use control::Lease;
+use kept::Kept;
+pub use kept::Sample;
 
-/// Most records, and samples, kept for whoever takes them.
-const MOST_KEPT: usize = 1 << 16;
 /// How many times longer an axis may take over what writes its flash.
 const FLASH_IS_SLOWER: u32 = 10;
 
@@ -59,36 +58,6 @@ impl std::fmt::Debug for Connection {
             .field("now", &self.now)
             .field("lease", &self.lease)
             .finish_non_exhaustive()
-    }
-}
-
-/// A sample of signals: its tick, and the signals in the order of the request; 0 behind the last one.
-pub type Sample = (u32, [i32; MAX_SIGNALS]);
-
-/// What came unasked, until somebody takes it.
-#[derive(Debug)]
-struct Kept<T> {
-    queue: VecDeque<T>,
-    /// What nobody took in time.
-    dropped: u32,
-}
-
-impl<T> Default for Kept<T> {
-    fn default() -> Self {
-        Self {
-            queue: VecDeque::new(),
-            dropped: 0,
-        }
-    }
-}
-
-impl<T> Kept<T> {
-    fn keep(&mut self, one: T) {
-        if self.queue.len() == MOST_KEPT {
-            self.queue.pop_front();
-            self.dropped = self.dropped.saturating_add(1);
-        }
-        self.queue.push_back(one);
     }
 }
 
@@ -270,33 +239,35 @@ impl Connection {
 
     /// The oldest record that came and that nobody has taken yet.
     pub fn take_record(&mut self) -> Option<Record> {
-        self.records.queue.pop_front()
+        self.records.take()
     }
 
     /// The same of samples of signals.
     pub fn take_sample(&mut self) -> Option<Sample> {
-        self.samples.queue.pop_front()
+        self.samples.take()
     }
 
     /// Records of this session that were lost: on the line, or because nobody took them.
     #[must_use]
     pub const fn records_lost(&self) -> u32 {
         let lost = self.client.records_lost();
-        lost.saturating_add(self.records.dropped)
+        lost.saturating_add(self.records.dropped())
     }
 
     /// Frames of samples that were lost on the line, and samples that nobody took.
     #[must_use]
     pub const fn samples_lost(&self) -> u32 {
         let lost = self.client.samples_lost();
-        lost.saturating_add(self.samples.dropped)
+        lost.saturating_add(self.samples.dropped())
     }
 }
 
 impl Drop for Connection {
     fn drop(&mut self) {
-        // Who listens no more cannot be told of an error; the lease lapses then.
-        let _ = self.release_shortly();
+        // A tool that falls over says nothing more. Who listens no more cannot be told of an error. The lease lapses then.
+        if !std::thread::panicking() {
+            let _ = self.release_shortly();
+        }
     }
 }
 

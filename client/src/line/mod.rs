@@ -34,6 +34,12 @@ pub trait Line {
 
     /// What it is called, for messages: the port.
     fn name(&self) -> String;
+
+    /// True if the axis stands still between exchanges, as one in lockstep does: a tool may then compute for as long as it
+    /// likes, and no lease lapses meanwhile.
+    fn is_lockstep(&self) -> bool {
+        false
+    }
 }
 
 impl<L: Line + ?Sized> Line for Box<L> {
@@ -43,6 +49,10 @@ impl<L: Line + ?Sized> Line for Box<L> {
 
     fn name(&self) -> String {
         (**self).name()
+    }
+
+    fn is_lockstep(&self) -> bool {
+        (**self).is_lockstep()
     }
 }
 

@@ -25,7 +25,10 @@ impl SerialLine {
     /// # Errors
     /// Of the system: there is none, it is in use, or may not be opened.
     pub fn open(path: &Path, baud: u32) -> io::Result<Self> {
-        Self::over(SerialPort::open(path, baud)?, path.display().to_string())
+        let port = SerialPort::open(path, baud)?;
+        #[cfg(unix)]
+        lock(&port)?;
+        Self::over(port, path.display().to_string())
     }
 
     fn over(mut port: SerialPort, name: String) -> io::Result<Self> {
@@ -50,6 +53,26 @@ impl SerialLine {
             .collect();
         ports.sort();
         ports
+    }
+}
+
+/// Keeps other tools from the port, as long as it is open: of an answer each would have a part. Other systems do so
+/// by themselves.
+#[cfg(unix)]
+fn lock(port: &SerialPort) -> io::Result<()> {
+    use std::fs::{File, TryLockError};
+    use std::os::fd::AsFd as _;
+
+    // A lock belongs to what was opened, of which this is another name.
+    let file = File::from(port.as_fd().try_clone_to_owned()?);
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(io::Error::new(
+            io::ErrorKind::ResourceBusy,
+            "another program has it",
+        )),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
@@ -94,5 +117,19 @@ mod tests {
         drop(there);
         let gone = (0..100).any(|_| line.exchange(&[0], &mut received).is_err());
         assert!(gone);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_port_has_one_user() {
+        use std::os::fd::AsRawFd as _;
+
+        let (_here, there) = SerialPort::pair().unwrap();
+        let path = std::fs::read_link(format!("/proc/self/fd/{}", there.as_raw_fd())).unwrap();
+        let first = SerialLine::open(&path, 115_200).unwrap();
+        let error = SerialLine::open(&path, 115_200).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::ResourceBusy, "{error}");
+        drop(first);
+        SerialLine::open(&path, 115_200).unwrap();
     }
 }

@@ -104,6 +104,7 @@ pub struct BenchLine {
     pub bench: Rc<RefCell<Bench>>,
     pub ticks: u32,
     pub is_cut: Rc<std::cell::Cell<bool>>,
+    pub is_lockstep: bool,
     time: Duration,
 }
 
@@ -113,6 +114,7 @@ impl BenchLine {
             bench: Rc::new(RefCell::new(Bench::new())),
             ticks: 2,
             is_cut: Rc::default(),
+            is_lockstep: false,
             time: Duration::ZERO,
         }
     }
@@ -146,6 +148,10 @@ impl Line for BenchLine {
 
     fn name(&self) -> String {
         "bench".to_owned()
+    }
+
+    fn is_lockstep(&self) -> bool {
+        self.is_lockstep
     }
 }
 

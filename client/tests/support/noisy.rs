@@ -161,4 +161,8 @@ impl<L: Line> Line for Noisy<L> {
     fn name(&self) -> String {
         self.line.name()
     }
+
+    fn is_lockstep(&self) -> bool {
+        self.line.is_lockstep()
+    }
 }
