@@ -48,15 +48,18 @@ fn pulls() -> impl Strategy<Value = Vec<Pull>> {
         stretch[0] = pull;
         stretch
     });
-    let quiet = (1..80_usize).prop_map(|ticks| {
-        let still = Pull {
-            enable: true,
-            ..Pull::default()
-        };
-        vec![still; ticks]
-    });
-    prop::collection::vec(prop_oneof![3 => stretch, 1 => quiet], 1..40)
-        .prop_map(|stretches| stretches.concat())
+    let stretches = prop_oneof![3 => stretch, 1 => quiet(1..80)];
+    let stretches = prop::collection::vec(stretches, 1..40);
+    (quiet(0..9), stretches).prop_map(|(first, stretches)| [first, stretches.concat()].concat())
+}
+
+/// Under control at rest.
+fn quiet(ticks: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Pull>> {
+    let still = Pull {
+        enable: true,
+        ..Pull::default()
+    };
+    ticks.prop_map(move |ticks| vec![still; ticks])
 }
 
 fn signal() -> impl Strategy<Value = Signal> {
