@@ -26,6 +26,7 @@ pub mod scenario_file;
 pub mod scenario_run;
 pub mod screw;
 pub mod sim_encoder;
+pub mod simulated_axis;
 pub mod simulation;
 pub mod statistics;
 pub mod tacho_watch;

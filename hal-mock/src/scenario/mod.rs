@@ -15,6 +15,7 @@ mod plant;
 mod runner;
 mod sections;
 mod tuning;
+mod workshop;
 mod world;
 
 pub use action::{Action, Ask, EncoderTrouble, Interference, Outer, Pulse, Timed, Trouble};
@@ -33,4 +34,5 @@ pub use sections::{
 pub use tuning::{
     BANDWIDTH_RAD_PER_S, autotuned_axis, model_of, observer_params, tuned_axis, tuned_estimator,
 };
+pub use workshop::workshop;
 pub use world::World;
