@@ -1,0 +1,3 @@
+//! The firmware in this process, over its link.
+
+mod session;
