@@ -47,10 +47,11 @@ impl Interruptions {
         }
     }
 
-    /// Keeps one that comes before `sample`; those that come before `oldest` or an earlier one make room.
+    /// Keeps one that comes before `sample`, the newest in a ring of `samples`; those that it no longer has make room.
     #[cold]
     #[inline(never)]
-    pub fn keep(&mut self, sample: u64, tick_before: u32, what: &Interruption, oldest: u64) {
+    pub fn keep(&mut self, sample: u64, tick_before: u32, what: &Interruption, samples: u32) {
+        let oldest = sample.wrapping_add(1).saturating_sub(u64::from(samples));
         let entries = self.entries;
         let mut in_ring = entries
             .into_iter()

@@ -233,9 +233,8 @@ impl<'m> Scope<'m> {
                     from: jump.from,
                     to: jump.to,
                 };
-                let oldest = taken.saturating_sub(u64::from(samples));
                 self.interruptions
-                    .keep(taken, self.newest_tick, &what, oldest);
+                    .keep(taken, self.newest_tick, &what, samples);
             }
         });
         self.next = if behind >= self.end { 0 } else { behind };
@@ -254,9 +253,9 @@ impl<'m> Scope<'m> {
     fn interrupt_by_missed(&mut self) {
         let what = Interruption::Missed { ticks: self.missed };
         self.missed = 0;
-        let oldest = self.taken.saturating_sub(u64::from(self.setup.samples));
+        let samples = self.setup.samples;
         self.interruptions
-            .keep(self.taken, self.newest_tick, &what, oldest);
+            .keep(self.taken, self.newest_tick, &what, samples);
     }
 
     /// What was recorded; none before [`Self::is_over`]. Outside the tick.

@@ -116,10 +116,13 @@ proptest! {
         level_at in any::<prop::sample::Index>(),
         forced in prop::option::weighted(0.2, any::<prop::sample::Index>()),
         missed in prop::collection::vec((any::<prop::sample::Index>(), 1..4_u32), 0..3),
-        spare in 0..9_usize,
+        (armed, spare) in (prop::option::of(any::<prop::sample::Index>()), 0..9_usize),
     ) {
         let mut dry = Puppet::new(start);
-        let rows: Vec<_> = pulls.iter().map(|pull| dry.step(pull)).collect();
+        let mut rows: Vec<_> = pulls.iter().map(|pull| dry.step(pull)).collect();
+        let armed = armed.map_or(0, |at| at.index(rows.len()));
+        let prior = armed.checked_sub(1).map(|before| rows[before]);
+        rows.drain(..armed);
         let signals = Signals::new(&signals).unwrap();
         let setup = Setup {
             signals,
@@ -136,13 +139,15 @@ proptest! {
             setup,
             forced: forced.map(|at| at.index(rows.len())),
             missed: told,
+            prior,
             rows,
         };
 
         let mut memory = vec![-1; samples as usize * signals.len() + spare];
         let mut scope = Scope::new(&mut memory, &setup).unwrap();
         let mut puppet = Puppet::new(start);
-        for (tick, pull) in pulls.iter().enumerate() {
+        pulls[..armed].iter().for_each(|pull| _ = puppet.step(pull));
+        for (tick, pull) in pulls[armed..].iter().enumerate() {
             let row = puppet.step(pull);
             prop_assert_eq!(row, life.rows[tick]);
             if life.forced == Some(tick) {

@@ -61,6 +61,25 @@ fn more_than_can_be_kept_are_told_as_such() {
 }
 
 #[test]
+fn one_before_the_first_sample_of_the_ring_has_left_it() {
+    let is_torn = |at: [u32; 5]| {
+        let mut memory = [0; 40];
+        let mut scope = Scope::new(&mut memory, &setup(20)).unwrap();
+        let mut puppet = Puppet::new(0);
+        for tick in 0..=20 {
+            puppet.step(&Pull::default());
+            scope.miss(at.into_iter().filter(|at| *at == tick).count() as u32);
+            scope.take(&puppet.axis);
+        }
+        scope.stop();
+        scope.recording().unwrap().is_torn()
+    };
+    // The ring then has the samples 1 to 20.
+    assert!(!is_torn([1, 5, 6, 7, 20]));
+    assert!(is_torn([2, 5, 6, 7, 20]));
+}
+
+#[test]
 fn an_origin_that_is_set_is_a_jump_and_the_values_around_it_are_exact() {
     let mut memory = [0; 24];
     let mut scope = Scope::new(&mut memory, &setup(12)).unwrap();

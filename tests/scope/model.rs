@@ -10,6 +10,8 @@ use crate::puppet::Row;
 pub struct Life {
     pub setup: Setup,
     pub rows: Vec<Row>,
+    /// What the axis gave in the tick before, if there was one.
+    pub prior: Option<Row>,
     /// The tick that `trigger` was called before.
     pub forced: Option<usize>,
     /// Ticks told as missed before a tick.
@@ -45,7 +47,8 @@ impl Life {
             }),
             Trigger::Fault(wanted) => {
                 let now = rows[at].outputs.fault;
-                let was = before(at).and_then(|before| rows[before].outputs.fault);
+                let row_before = before(at).map(|before| rows[before]).or(self.prior);
+                let was = row_before.and_then(|row| row.outputs.fault);
                 let is_new = was.is_none() || rows[at].is_cleared;
                 now.is_some() && is_new && (wanted.is_none() || wanted == now)
             }
