@@ -116,7 +116,14 @@ fn mbpoll_reads_and_writes() {
     let value = ["-t", "4", "-r", &place, "--", "16543", "16896", "0", "0"];
     shown(&value, &["Written 4 references"]);
     assert_eq!(
-        served.panel.lock().unwrap().params.motion.counts_per_mm,
+        served
+            .panel
+            .lock()
+            .unwrap()
+            .settings
+            .axis
+            .motion
+            .counts_per_mm,
         2000.5
     );
     shown(
@@ -152,7 +159,7 @@ fn pymodbus(served: &Served, kind: &str) {
     };
     run("off");
     let mut panel = served.panel.lock().unwrap();
-    assert_eq!(panel.params.motion.counts_per_mm, 1234.5678901234567);
+    assert_eq!(panel.settings.axis.motion.counts_per_mm, 1234.5678901234567);
     assert_eq!(panel.saved, 1);
     panel.view.seen.enabled = true;
     drop(panel);
