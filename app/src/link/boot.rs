@@ -142,7 +142,12 @@ impl<F: NorFlash> Boot<F> {
             is_storeless: bench.store.is_none(),
         };
         let control = AxisControl::new(axis, tick, captures_out, interlock);
-        Ok((control, Link { service, bench }, loaded))
+        let link = Link {
+            service,
+            bench,
+            asked: None,
+        };
+        Ok((control, link, loaded))
     }
 }
 

@@ -26,7 +26,8 @@ pub use boot::{Boot, Loaded};
 pub use memory::{MAP_BYTES, Memory, WORDS};
 
 use embedded_storage::nor_flash::NorFlash;
-use leadscrew::protocol::service::Service;
+use leadscrew::protocol::refusal::Refusal;
+use leadscrew::protocol::service::{Service, Ticket};
 
 use crate::report::Report;
 use bench::Bench;
@@ -38,12 +39,14 @@ pub type Send<'s> = dyn FnMut(&[u8]) -> bool + 's;
 pub struct Link<F: NorFlash> {
     service: Service,
     bench: Bench<F>,
+    /// The last order of another line that was on its way, and what came of it.
+    asked: Option<(Ticket, Option<Result<(), Refusal>>)>,
 }
 
 impl<F: NorFlash> Link<F> {
     /// Takes the report of a tick.
     pub fn report(&mut self, report: &Report, send: &mut Send<'_>) {
-        let Self { service, bench } = self;
+        let Self { service, bench, .. } = self;
         bench.take(report);
         if let Some(frame) = service.record(&report.record)
             && !send(frame)
@@ -55,10 +58,19 @@ impl<F: NorFlash> Link<F> {
 
     /// Takes what else the tick has left.
     pub fn poll(&mut self, send: &mut Send<'_>) {
-        let Self { service, bench } = self;
+        let Self {
+            service,
+            bench,
+            asked,
+        } = self;
         bench.fetch();
         while let Some(outcome) = bench.ends.outcomes.dequeue() {
             bench.settled(outcome.ticket);
+            if let Some((ticket, result)) = asked
+                && *ticket == outcome.ticket
+            {
+                *result = Some(outcome.result);
+            }
             // A reply that finds no room is asked for again.
             service.settle(outcome.ticket, outcome.result, &bench.seen, &mut |frame| {
                 send(frame);
@@ -74,7 +86,7 @@ impl<F: NorFlash> Link<F> {
 
     /// Takes bytes that came, any number of them.
     pub fn receive(&mut self, bytes: &[u8], send: &mut Send<'_>) {
-        let Self { service, bench } = self;
+        let Self { service, bench, .. } = self;
         let seen = bench.seen;
         service.receive(bytes, &seen, bench, &mut |frame| {
             send(frame);

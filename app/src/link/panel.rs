@@ -2,14 +2,15 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use leadscrew::protocol::refusal::Refusal;
-use leadscrew::protocol::reply::Reply;
+use leadscrew::protocol::service::{Passed, Ticket};
+use leadscrew::settings::Settings;
 
 use super::Link;
-use crate::modbus::{Panel, Parameter, View};
+use crate::modbus::{Panel, View};
 
 impl<F: NorFlash> Panel for Link<F> {
     fn view(&self) -> View {
-        let Self { service, bench } = self;
+        let Self { service, bench, .. } = self;
         View {
             seen: bench.seen,
             scale: bench.scale,
@@ -23,38 +24,27 @@ impl<F: NorFlash> Panel for Link<F> {
         }
     }
 
-    fn parameter(&mut self, index: u16) -> Option<Parameter> {
-        match self.service.parameter(index) {
-            Ok(Reply::Parameter {
-                value,
-                min,
-                max,
-                default,
-                ..
-            }) => Some(Parameter {
-                value,
-                min,
-                max,
-                default,
-            }),
-            Ok(Reply::Word { at, words, .. }) => Some(Parameter {
-                value: f64::from(at),
-                min: 0.0,
-                max: f64::from(words.saturating_sub(1)),
-                default: 0.0,
-            }),
-            _ => None,
-        }
+    fn settings(&self) -> Settings {
+        *self.service.settings()
     }
 
-    fn set_parameters(&mut self, first: u16, values: &[f64]) -> Result<(), Refusal> {
-        let Self { service, bench } = self;
+    fn set(&mut self, settings: Settings) -> Result<Passed, Refusal> {
+        let Self { service, bench, .. } = self;
         let seen = bench.seen;
-        service.set_numbers(first, values, &seen, bench)
+        let passed = service.set_all(settings, &seen, bench);
+        if let Ok(Passed::OnItsWay(ticket)) = passed {
+            self.asked = Some((ticket, None));
+        }
+        passed
+    }
+
+    fn outcome(&mut self, ticket: Ticket) -> Option<Result<(), Refusal>> {
+        let (asked, outcome) = self.asked?;
+        outcome.filter(|_| asked == ticket)
     }
 
     fn save(&mut self) -> Result<(), Refusal> {
-        let Self { service, bench } = self;
+        let Self { service, bench, .. } = self;
         bench.save_parameters(service.settings())
     }
 }

@@ -1,9 +1,11 @@
 //! What is at which address, and what a write does.
 
 use leadscrew::protocol::refusal::Refusal;
+use leadscrew::protocol::service::{Passed, Ticket};
 use rmodbus::ErrorKind;
 
 use super::bits::discrete;
+use super::list::with;
 use super::registers::{LineCounts, Scene, register_at};
 use super::{Panel, Parameter, ParameterList, Words};
 
@@ -33,6 +35,8 @@ pub(super) struct Map<'m, P> {
     pub list: ParameterList,
     pub counts: LineCounts,
     pub last_refusal: &'m mut u16,
+    /// A write that is on its way: it is answered when the axis has taken it.
+    pub waits: &'m mut Option<Ticket>,
 }
 
 impl<P: Panel> Map<'_, P> {
@@ -77,7 +81,7 @@ impl<P: Panel> Map<'_, P> {
             _ => return None,
         };
         let index = self.index(base, address)?;
-        let figure = figure(self.panel.parameter(index)?);
+        let figure = figure(Parameter::at(self.panel.settings(), index)?);
         let first = base + index * WORDS_PER_PARAMETER;
         Some((first, Words::of(&figure.to_be_bytes())))
     }
@@ -105,19 +109,22 @@ impl<P: Panel> Map<'_, P> {
     /// Writes registers, two bytes each, by function 16 or 6.
     pub fn write(&mut self, address: u16, data: &[u8]) -> Result<(), ErrorKind> {
         let outcome = self.try_to_write(address, data);
+        if let Ok(Passed::OnItsWay(ticket)) = outcome {
+            *self.waits = Some(ticket);
+        }
         let (number, outcome) = match outcome {
-            Ok(()) => (0, Ok(())),
+            Ok(_) => (0, Ok(())),
             Err((refusal, error)) => (refusal as u16, Err(error)),
         };
         *self.last_refusal = number;
         outcome
     }
 
-    fn try_to_write(&mut self, address: u16, data: &[u8]) -> Result<(), (Refusal, ErrorKind)> {
+    fn try_to_write(&mut self, address: u16, data: &[u8]) -> Result<Passed, (Refusal, ErrorKind)> {
         if address == SAVE {
             let is_key = data == SAVE_KEY.to_be_bytes();
             return if is_key {
-                self.while_off(P::save)
+                self.while_off(|panel| panel.save().map(|()| Passed::Taken))
             } else {
                 Err((Refusal::ParameterOutOfRange, ErrorKind::IllegalDataValue))
             };
@@ -135,14 +142,15 @@ impl<P: Panel> Map<'_, P> {
         for (value, bytes) in values.iter_mut().zip(given) {
             *value = f64::from_be_bytes(*bytes);
         }
-        self.while_off(|panel| panel.set_parameters(first, &values[..given.len()]))
+        let values = &values[..given.len()];
+        self.while_off(|panel| panel.set(with(panel.settings(), first, values)?))
     }
 
     /// Does what is not done while the axis is on.
     fn while_off(
         &mut self,
-        act: impl FnOnce(&mut P) -> Result<(), Refusal>,
-    ) -> Result<(), (Refusal, ErrorKind)> {
+        act: impl FnOnce(&mut P) -> Result<Passed, Refusal>,
+    ) -> Result<Passed, (Refusal, ErrorKind)> {
         let outcome = if self.panel.view().is_off() {
             act(self.panel)
         } else {
@@ -153,13 +161,18 @@ impl<P: Panel> Map<'_, P> {
 }
 
 /// The exception by which a refusal is told; its number is in the register `last_refusal`.
-fn exception(refusal: Refusal) -> ErrorKind {
+pub(super) fn exception(refusal: Refusal) -> ErrorKind {
     match refusal {
-        Refusal::UnknownParameter | Refusal::WrongType => ErrorKind::IllegalDataAddress,
-        Refusal::ParameterOutOfRange | Refusal::Inconsistent => ErrorKind::IllegalDataValue,
-        Refusal::AxisOn | Refusal::Busy | Refusal::QueueFull | Refusal::StillMoving => {
-            ErrorKind::SlaveDeviceBusy
+        Refusal::UnknownParameter => ErrorKind::IllegalDataAddress,
+        Refusal::ParameterOutOfRange | Refusal::UnknownWord | Refusal::Inconsistent => {
+            ErrorKind::IllegalDataValue
         }
+        Refusal::AxisOn
+        | Refusal::Busy
+        | Refusal::QueueFull
+        | Refusal::StillMoving
+        | Refusal::ExperimentRuns
+        | Refusal::WorkMemoryLent => ErrorKind::SlaveDeviceBusy,
         _ => ErrorKind::SlaveDeviceFailure,
     }
 }

@@ -23,11 +23,13 @@ pub mod registers;
 mod words;
 
 pub use config::{Config, ConfigError};
-pub use list::ParameterList;
-pub use panel::{Panel, Parameter, ProbeLatch, View};
+pub use list::{Parameter, ParameterList};
+pub use panel::{Panel, ProbeLatch, View};
 pub use words::Words;
 
 use heapless::Vec;
+use leadscrew::protocol::refusal::Refusal;
+use leadscrew::protocol::service::Ticket;
 use leadscrew::settings::Settings;
 use rmodbus::consts::{ModbusErrorCode, ModbusFunction};
 use rmodbus::server::{ModbusFrame, Read, Write};
@@ -55,13 +57,15 @@ struct Server {
     /// Number of the last refusal of a write, 0 for none.
     last_refusal: u16,
     taken: u32,
+    /// The reply waits for the axis.
+    waits: Option<Ticket>,
     reply: Vec<u8, MAX_FRAME>,
 }
 
 impl Modbus {
-    /// The unit of an axis with parameters like `params`; only their names matter here.
+    /// The unit of an axis with settings like these; only their names matter here.
     #[must_use]
-    pub fn new(config: Config, settings: &Settings) -> Self {
+    pub fn new(config: Config, settings: Settings) -> Self {
         Self {
             unit: config.unit(),
             line: Line::new(config),
@@ -69,6 +73,7 @@ impl Modbus {
                 list: ParameterList::of(settings),
                 last_refusal: 0,
                 taken: 0,
+                waits: None,
                 reply: Vec::new(),
             },
         }
@@ -91,10 +96,11 @@ impl Modbus {
         });
     }
 
-    /// Looks whether the line has fallen silent, which ends a frame: to be called at least every millisecond or so. A
-    /// frame whose length tells its end does not wait for it.
+    /// Answers a write that the axis has taken meanwhile, and looks whether the line has fallen silent, which ends a frame:
+    /// to be called at least every millisecond or so. A frame whose length tells its end does not wait for it.
     pub fn poll(&mut self, now_us: u32, panel: &mut impl Panel, send: &mut dyn FnMut(&[u8])) {
         let Self { unit, line, server } = self;
+        server.settle(*unit, panel, send);
         line.poll(now_us, |frame, dropped| {
             server.take(*unit, dropped, frame, panel, send);
         });
@@ -102,6 +108,28 @@ impl Modbus {
 }
 
 impl Server {
+    /// Answers what was on its way, if there is an outcome.
+    fn settle(&mut self, unit: u8, panel: &mut impl Panel, send: &mut dyn FnMut(&[u8])) {
+        let Some(outcome) = self.waits.and_then(|ticket| panel.outcome(ticket)) else {
+            return;
+        };
+        self.waits = None;
+        let said = outcome.or_else(|refusal| self.refuse(unit, refusal));
+        if said.is_ok() {
+            send(&self.reply);
+        }
+    }
+
+    /// Makes the reply one that refuses.
+    fn refuse(&mut self, unit: u8, refusal: Refusal) -> Result<(), ErrorKind> {
+        self.last_refusal = refusal as u16;
+        let function = self.reply.get(1).copied().unwrap_or_default();
+        let mut frame = ModbusFrame::new(unit, &[], ModbusProto::Rtu, &mut self.reply);
+        frame.responding_to_fn = function;
+        frame.error = Some(map::exception(refusal).to_modbus_error()?);
+        frame.finalize_response()
+    }
+
     fn take(
         &mut self,
         unit: u8,
@@ -111,12 +139,14 @@ impl Server {
         send: &mut dyn FnMut(&[u8]),
     ) {
         self.taken = self.taken.wrapping_add(1);
+        self.waits = None;
         let counts = LineCounts {
             taken: self.taken,
             dropped,
         };
         // An error is of a frame that nothing can be said to.
-        if self.answer(unit, counts, frame, panel).is_ok() && !self.reply.is_empty() {
+        let is_said = self.answer(unit, counts, frame, panel).is_ok();
+        if is_said && self.waits.is_none() && !self.reply.is_empty() {
             send(&self.reply);
         }
     }
@@ -132,6 +162,7 @@ impl Server {
         let Self {
             list,
             last_refusal,
+            waits,
             reply,
             ..
         } = self;
@@ -152,6 +183,7 @@ impl Server {
                 list: *list,
                 counts,
                 last_refusal,
+                waits,
             };
             if frame.readonly {
                 let outcome = match frame.get_external_read()? {

@@ -1,7 +1,8 @@
 //! What the axis gives to the line.
 
 use leadscrew::protocol::refusal::Refusal;
-use leadscrew::protocol::service::Seen;
+use leadscrew::protocol::service::{Passed, Seen, Ticket};
+use leadscrew::settings::Settings;
 use leadscrew::supervisor::{FirstFault, State};
 use leadscrew::units::{AxisScale, Position, Velocity};
 
@@ -72,33 +73,23 @@ impl View {
     }
 }
 
-/// A parameter, in its own unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its value.
-    pub value: f64,
-    /// Smallest value allowed.
-    pub min: f64,
-    /// Largest value allowed.
-    pub max: f64,
-    /// What it is if nobody sets it.
-    pub default: f64,
-}
-
 /// The axis, for whoever reads its state and sets it up.
 pub trait Panel {
     /// How it stands; asked once for a request, so that all values of a reply are of one tick.
     fn view(&self) -> View;
 
-    /// The parameter at `index` of the list of the link; of one that is a word, its place among its words.
-    fn parameter(&mut self, index: u16) -> Option<Parameter>;
+    /// What is set.
+    fn settings(&self) -> Settings;
 
-    /// Sets the parameters from `first` on, all of them or none: each within its range, and together a valid set.
+    /// Sets all of it, or nothing: it is validated here. What comes of it where it is on its way is asked of
+    /// [`Self::outcome`].
     ///
     /// # Errors
-    /// A [`Refusal`]; nothing is changed then: [`Refusal::UnknownParameter`] if the list ends before, [`Refusal::AxisOn`] if
-    /// the axis is on.
-    fn set_parameters(&mut self, first: u16, values: &[f64]) -> Result<(), Refusal>;
+    /// A [`Refusal`]; nothing is changed then. An axis that is on refuses with [`Refusal::AxisOn`].
+    fn set(&mut self, settings: Settings) -> Result<Passed, Refusal>;
+
+    /// What came of the last [`Self::set`], which was on its way with this ticket; none yet while it is.
+    fn outcome(&mut self, ticket: Ticket) -> Option<Result<(), Refusal>>;
 
     /// Keeps all parameters in the store. It returns when they are there.
     ///

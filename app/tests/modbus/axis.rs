@@ -6,7 +6,7 @@ use leadscrew::protocol::service::Seen;
 use leadscrew::supervisor::{Fault, State};
 use leadscrew_app::modbus::View;
 
-use crate::fake::{Fake, Unit, params, view};
+use crate::fake::{Unit, settings, view};
 
 fn at(count: u32, enable: bool) -> Inputs<'static> {
     let capture = Capture {
@@ -26,12 +26,8 @@ fn seen(axis: &Axis<'_>) -> View {
 
 #[test]
 fn an_axis_that_is_pushed_away_tells_where_and_why_it_stopped() {
-    let mut params = params();
-    let mut axis = Axis::new(params.validate().unwrap());
-    let mut unit = Unit::of(Fake {
-        params,
-        ..Fake::default()
-    });
+    let mut axis = Axis::new(settings().validate().unwrap());
+    let mut unit = Unit::default();
     for _ in 0..2_000 {
         axis.step(&at(100, true));
     }

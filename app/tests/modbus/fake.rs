@@ -1,18 +1,16 @@
 //! An axis for the line to tell of, and a line to ask it over.
 
 use leadscrew::estimator::EstimatorConfig;
-use leadscrew::protocol::parameters::{NewValue, Which, parameter, write};
 use leadscrew::protocol::refusal::Refusal;
-use leadscrew::protocol::reply::Reply;
-use leadscrew::protocol::service::Seen;
+use leadscrew::protocol::service::{Passed, Seen, Ticket};
 use leadscrew::settings::Settings;
 use leadscrew::units::AxisScale;
 pub use leadscrew_app::modbus::Panel;
-use leadscrew_app::modbus::{Config, Modbus, Parameter, View};
+use leadscrew_app::modbus::{Config, Modbus, View};
 
 pub const UNIT: u8 = 7;
 
-pub fn params() -> Settings {
+pub fn settings() -> Settings {
     Settings::new(EstimatorConfig::by_name("simple").unwrap().unwrap())
 }
 
@@ -34,7 +32,9 @@ pub fn view() -> View {
 /// What it says it is; parameters as the link has them.
 pub struct Fake {
     pub view: View,
-    pub params: Settings,
+    pub settings: Settings,
+    pub passed: Passed,
+    pub outcome: Option<Result<(), Refusal>>,
     pub saved: u32,
     pub store: Result<(), Refusal>,
 }
@@ -43,7 +43,9 @@ impl Default for Fake {
     fn default() -> Self {
         Self {
             view: view(),
-            params: params(),
+            settings: settings(),
+            passed: Passed::Taken,
+            outcome: None,
             saved: 0,
             store: Ok(()),
         }
@@ -55,38 +57,21 @@ impl Panel for Fake {
         self.view
     }
 
-    fn parameter(&mut self, index: u16) -> Option<Parameter> {
-        match parameter(&mut self.params, Which::At(index)) {
-            Ok(Reply::Parameter {
-                value,
-                min,
-                max,
-                default,
-                ..
-            }) => Some(Parameter {
-                value,
-                min,
-                max,
-                default,
-            }),
-            Ok(Reply::Word { at, words, .. }) => Some(Parameter {
-                value: f64::from(at),
-                min: 0.0,
-                max: f64::from(words - 1),
-                default: 0.0,
-            }),
-            _ => None,
-        }
+    fn settings(&self) -> Settings {
+        self.settings
     }
 
-    fn set_parameters(&mut self, first: u16, values: &[f64]) -> Result<(), Refusal> {
-        let mut params = self.params;
-        for (index, value) in (first..).zip(values) {
-            write(&mut params, Which::At(index), NewValue::Number(*value))?;
+    fn set(&mut self, mut settings: Settings) -> Result<Passed, Refusal> {
+        settings.validate().map_err(|_| Refusal::Inconsistent)?;
+        if self.passed == Passed::Taken {
+            self.settings = settings;
         }
-        params.validate().map_err(|_| Refusal::Inconsistent)?;
-        self.params = params;
-        Ok(())
+        Ok(self.passed)
+    }
+
+    fn outcome(&mut self, ticket: Ticket) -> Option<Result<(), Refusal>> {
+        let outcome = self.outcome;
+        outcome.filter(|_| self.passed == Passed::OnItsWay(ticket))
     }
 
     fn save(&mut self) -> Result<(), Refusal> {
@@ -110,7 +95,7 @@ impl Default for Unit {
 impl Unit {
     pub fn of(panel: Fake) -> Self {
         Self {
-            modbus: Modbus::new(Config::serial(UNIT, 19_200).unwrap(), &panel.params),
+            modbus: Modbus::new(Config::serial(UNIT, 19_200).unwrap(), panel.settings),
             panel,
             // Wraps soon.
             now_us: u32::MAX - 5_000,

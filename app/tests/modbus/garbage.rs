@@ -35,7 +35,7 @@ proptest! {
     fn any_bytes_leave_it_whole(pieces in vec((pieces(), 0_u32..5000), 0..6), on in any::<bool>()) {
         let mut panel = Fake::default();
         panel.view.seen.enabled = on;
-        let before = panel.params;
+        let before = panel.settings;
         let mut unit = Unit::of(panel);
         for (piece, pause) in &pieces {
             let mut sent = unit.hear(piece);
@@ -46,9 +46,9 @@ proptest! {
         }
         unit.wait_us(10_000);
         prop_assert_eq!(unit.read(4, 0, 1), [1]);
-        prop_assert!(unit.panel.params.validate().is_ok());
+        prop_assert!(unit.panel.settings.validate().is_ok());
         if on {
-            prop_assert!(unit.panel.params == before && unit.panel.saved == 0);
+            prop_assert!(unit.panel.settings == before && unit.panel.saved == 0);
         }
     }
 }

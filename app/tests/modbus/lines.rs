@@ -80,7 +80,7 @@ fn a_carrier_without_time_may_split_a_frame_anywhere() {
     let mut unit = Unit::default();
     let config = Config::serial(UNIT, 19_200).unwrap();
     let config = config.with_silence_us(100_000);
-    unit.modbus = leadscrew_app::modbus::Modbus::new(config, &unit.panel.params);
+    unit.modbus = leadscrew_app::modbus::Modbus::new(config, unit.panel.settings);
     for length in 1..version().len() {
         let frame = version();
         let (first, second) = frame.split_at(length);

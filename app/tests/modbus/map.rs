@@ -47,6 +47,7 @@ fn busy() -> View {
             travel: None,
             is_planned: true,
             dropped_plans: 0,
+            ..Seen::default()
         },
         scale: AxisScale::new(400.0, 2_000.0).unwrap(),
         percent: 120,

@@ -120,7 +120,7 @@ fn mbpoll_reads_and_writes() {
             .panel
             .lock()
             .unwrap()
-            .params
+            .settings
             .axis
             .motion
             .counts_per_mm,
@@ -159,7 +159,7 @@ fn pymodbus(served: &Served, kind: &str) {
     };
     run("off");
     let mut panel = served.panel.lock().unwrap();
-    assert_eq!(panel.params.axis.motion.counts_per_mm, 1234.5678901234567);
+    assert_eq!(panel.settings.axis.motion.counts_per_mm, 1234.5678901234567);
     assert_eq!(panel.saved, 1);
     panel.view.seen.enabled = true;
     drop(panel);

@@ -9,43 +9,46 @@ use leadscrew_app::modbus::map::{
 };
 use leadscrew_app::modbus::registers::REGISTERS;
 
-use crate::fake::params;
+use crate::fake::settings;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/modbus.md");
 
+/// Name, unit, and the words that it may be.
+type Parameter = (String, &'static str, Vec<&'static str>);
+
 #[derive(Default)]
-struct Names(Vec<(String, String)>);
+struct Names(Vec<Parameter>);
 
 impl Values for Names {
     fn number(&mut self, key: Key, number: &Number, value: f64) -> f64 {
-        self.0.push((key.to_string(), number.unit.to_owned()));
+        self.0.push((key.to_string(), number.unit, Vec::new()));
         value
     }
 
     fn word(&mut self, key: Key, words: &[&'static str], value: &'static str) -> &'static str {
-        let words: Vec<_> = (0..)
-            .zip(words)
-            .map(|(at, word)| format!("{at} {word}"))
-            .collect();
-        self.0.push((key.to_string(), words.join(", ")));
+        self.0.push((key.to_string(), "", words.to_vec()));
         value
     }
 }
 
-fn parameters() -> Vec<(String, String)> {
+fn parameters() -> Vec<Parameter> {
     let mut names = Names::default();
-    params().visit(&mut names);
+    settings().visit(&mut names);
     names.0
 }
 
 /// Names of all parameters, in the order of the link.
 pub fn names() -> Vec<String> {
-    parameters().into_iter().map(|(name, _)| name).collect()
+    parameters().into_iter().map(|(name, ..)| name).collect()
 }
 
 /// CRC-32 of the names, bit by bit.
 pub fn list_checksum() -> u32 {
-    let text = names().join("\n") + "\n";
+    let lines = parameters().into_iter().map(|(name, _, words)| {
+        let words = words.into_iter().map(|word| format!(" {word}"));
+        format!("{name}{}\n", words.collect::<String>())
+    });
+    let text: String = lines.collect();
     let crc = text.bytes().fold(!0, |crc: u32, byte| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| {
             crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 }
@@ -116,10 +119,13 @@ fn parameter_table() -> String {
         names().len(),
         list_checksum()
     );
-    text.push_str("| n | value | parameter | unit |\n| --- | --- | --- | --- |\n");
-    for (index, (name, unit)) in parameters().iter().enumerate() {
+    text.push_str("| n | value | parameter | unit, or words |\n| --- | --- | --- | --- |\n");
+    for (index, (name, unit, words)) in parameters().iter().enumerate() {
         let address = usize::from(VALUES) + index * usize::from(WORDS_PER_PARAMETER);
-        let _ = writeln!(text, "| {index} | {address} | `{name}` | {unit} |");
+        let words = words.iter().enumerate();
+        let words: Vec<_> = words.map(|(at, word)| format!("{at} {word}")).collect();
+        let words = words.join(", ");
+        let _ = writeln!(text, "| {index} | {address} | `{name}` | {unit}{words} |");
     }
     text
 }

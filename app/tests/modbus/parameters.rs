@@ -1,9 +1,12 @@
 //! Parameters: read exactly, written while the axis is off, refused with a reason.
 
+use leadscrew::estimator::EstimatorConfig;
 use leadscrew::protocol::refusal::Refusal;
+use leadscrew::protocol::service::Passed;
 use leadscrew::supervisor::State;
+use leadscrew_app::modbus::Parameter;
 
-use crate::fake::{Panel as _, Unit, asking, number, words};
+use crate::fake::{Panel as _, UNIT, Unit, asking, framed, number, words, writing};
 use crate::page::names;
 
 const BUSY: [u8; 2] = [0x90, 6];
@@ -21,18 +24,18 @@ fn place(name: &str) -> u16 {
 /// Refused with that exception for that reason.
 #[track_caller]
 fn refused(unit: &mut Unit, address: u16, words: &[u16], exception: [u8; 2], reason: Refusal) {
-    let before = unit.panel.params;
+    let before = unit.panel.settings;
     assert_eq!(unit.write(address, words), exception);
     assert_eq!(unit.read(4, LAST_REFUSAL, 1), [reason as u16]);
-    assert!(unit.panel.params == before);
+    assert!(unit.panel.settings == before);
 }
 
 #[test]
 fn every_parameter_is_read_to_the_last_bit_with_its_range() {
     let mut unit = Unit::default();
-    unit.panel.params.axis.motion.counts_per_mm = 1.0 / 3.0;
+    unit.panel.settings.axis.motion.counts_per_mm = 1.0 / 3.0;
     for index in 0..names().len() as u16 {
-        let parameter = unit.panel.parameter(index).unwrap();
+        let parameter = Parameter::at(unit.panel.settings(), index).unwrap();
         let read = [1000, 2000, 3000, 4000].map(|base| unit.read(3, base + 4 * index, 4));
         let read = read.map(|words| number(&words).to_bits());
         let figures = [
@@ -57,7 +60,7 @@ fn a_parameter_is_written_while_the_axis_is_off() {
     let mut unit = Unit::default();
     let address = place("motion.max_feed_mm_per_min");
     assert_eq!(unit.write(address, &words(8000.1)), asking(16, address, 4));
-    assert_eq!(unit.panel.params.axis.motion.max_feed_mm_per_min, 8000.1);
+    assert_eq!(unit.panel.settings.axis.motion.max_feed_mm_per_min, 8000.1);
     unit.panel.view.seen.state = State::Fault;
     assert_eq!(unit.write(address, &words(8000.2)), asking(16, address, 4));
     assert_eq!(unit.read(4, LAST_REFUSAL, 1), [0]);
@@ -78,7 +81,7 @@ fn parameters_that_go_together_are_written_in_one_request() {
     );
     let both = [words(100.0), words(200.0)].concat();
     assert_eq!(unit.write(low, &both), asking(16, low, 8));
-    let motion = &unit.panel.params.axis.motion;
+    let motion = &unit.panel.settings.axis.motion;
     assert_eq!(
         [motion.travel_low_mm, motion.travel_high_mm],
         [100.0, 200.0]
@@ -180,8 +183,7 @@ fn nothing_else_is_written() {
         behind - 4,
         &last,
         ILLEGAL_ADDRESS,
-        // The last one is a word.
-        Refusal::WrongType,
+        Refusal::UnknownParameter,
     );
 }
 
@@ -205,4 +207,58 @@ fn saving_takes_its_key_and_tells_when_it_failed() {
     unit.panel.store = Err(Refusal::NotSupported);
     refused(&mut unit, 5000, &[0x5A5A], [0x90, 4], Refusal::NotSupported);
     assert_eq!(unit.panel.saved, 2);
+}
+
+#[test]
+fn a_word_is_its_place_among_the_words() {
+    let mut unit = Unit::default();
+    let address = place("estimator");
+    let names = EstimatorConfig::NAMES;
+    for (at, name) in names.iter().enumerate() {
+        let value = words(at as f64);
+        assert_eq!(unit.write(address, &value), asking(16, address, 4));
+        assert_eq!(unit.panel.settings.axis.estimator.name(), *name);
+        assert_eq!(unit.read(4, address, 4), value);
+    }
+    assert_eq!(number(&unit.read(4, address + 1000, 4)), 0.0);
+    assert_eq!(
+        number(&unit.read(4, address + 2000, 4)),
+        names.len() as f64 - 1.0
+    );
+    assert!(number(&unit.read(4, address + 3000, 4)).is_nan());
+    for value in [-1.0, 0.5, names.len() as f64, f64::NAN] {
+        refused(
+            &mut unit,
+            address,
+            &words(value),
+            ILLEGAL_VALUE,
+            Refusal::UnknownWord,
+        );
+    }
+}
+
+#[test]
+fn what_is_on_its_way_is_answered_when_the_axis_has_taken_it() {
+    let mut unit = Unit::default();
+    let address = place("motion.max_feed_mm_per_min");
+    let request = framed(UNIT, &writing(address, &words(8000.0)));
+    unit.panel.passed = Passed::OnItsWay(7);
+    assert!(unit.hear(&request).is_empty());
+    assert!(unit.wait_us(100).is_empty());
+    unit.panel.outcome = Some(Ok(()));
+    let taken = [framed(UNIT, &asking(16, address, 4))];
+    assert_eq!(unit.wait_us(100), taken);
+    assert!(unit.wait_us(100).is_empty(), "once");
+
+    unit.panel.outcome = None;
+    assert!(unit.hear(&request).is_empty());
+    unit.panel.outcome = Some(Err(Refusal::AxisOn));
+    assert_eq!(unit.wait_us(100), [framed(UNIT, &BUSY)]);
+    assert_eq!(unit.read(4, LAST_REFUSAL, 1), [25]);
+    // The master does not wait for it any more.
+    unit.panel.outcome = None;
+    assert!(unit.hear(&request).is_empty());
+    assert_eq!(unit.read(4, 0, 1), [1]);
+    unit.panel.outcome = Some(Ok(()));
+    assert!(unit.wait_us(100).is_empty());
 }

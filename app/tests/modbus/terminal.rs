@@ -45,7 +45,7 @@ fn serve(
     // A terminal and TCP keep no time between characters.
     let config = Config::serial(UNIT, 19_200).unwrap();
     let config = config.with_silence_us(50_000);
-    let mut modbus = Modbus::new(config, &panel.lock().unwrap().params);
+    let mut modbus = Modbus::new(config, panel.lock().unwrap().settings);
     let started = Instant::now();
     let mut buffer = [0; 64];
     while !is_over.load(Ordering::Relaxed) {

@@ -15,7 +15,6 @@ use super::decoder::{Decoder, Dropped};
 use super::experiment::Draft;
 use super::frame::{Channel, Frame, FrameBuffer, Header};
 use super::lease::Lease;
-use super::parameters::{Which, parameter};
 use super::refusal::Refusal;
 use super::reply::Reply;
 use super::request::Request;
@@ -150,26 +149,18 @@ impl Service {
         self.inner.mover.is_held()
     }
 
-    /// The parameter at a place of the list.
-    ///
-    /// # Errors
-    /// [`Refusal::UnknownParameter`]
-    pub fn parameter(&mut self, index: u16) -> Result<Reply<'static>, Refusal> {
-        parameter(&mut self.inner.settings, Which::At(index))
-    }
-
-    /// Sets numbers from place `first` of the list on, all of them or none, for another line than this one.
+    /// Puts all settings into force, or none, for another line than this one. What is on its way is told to
+    /// [`Self::settle`], which has nobody to answer then.
     ///
     /// # Errors
     /// As of [`Request::SetParameter`]; nothing is changed then.
-    pub fn set_numbers(
+    pub fn set_all(
         &mut self,
-        first: u16,
-        values: &[f64],
+        settings: Settings,
         seen: &Seen,
         port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
-        self.inner.set_numbers(first, values, seen, port)
+    ) -> Result<Passed, Refusal> {
+        self.inner.set_all(settings, seen, port)
     }
 
     /// The settings in force.

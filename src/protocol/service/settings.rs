@@ -34,20 +34,15 @@ impl Inner {
         self.put(settings, port)
     }
 
-    /// Sets numbers one after the other in the list, all of them or none.
-    pub(super) fn set_numbers(
+    /// Puts all settings into force, or none.
+    pub(super) fn set_all(
         &mut self,
-        first: u16,
-        values: &[f64],
+        settings: Settings,
         seen: &Seen,
         port: &mut dyn Port,
-    ) -> Result<(), Refusal> {
+    ) -> Result<Passed, Refusal> {
         Self::check_off(seen)?;
-        let mut settings = self.settings;
-        for (value, index) in values.iter().zip(first..) {
-            write(&mut settings, Which::At(index), NewValue::Number(*value))?;
-        }
-        self.put(settings, port).map(|_| ())
+        self.put(settings, port)
     }
 
     pub(super) fn open_edit(&mut self, seen: &Seen) -> Result<Passed, Refusal> {
