@@ -50,6 +50,9 @@ fn an_axis_is_enabled_moved_and_read() {
     assert!(status.is_moving, "{status:?}");
     near(status.velocity_mm_per_min, -3000.0, 150.0);
     near(axis.wait_for_rest().unwrap().setpoint_mm, -10.0, 1e-6);
+    // At once after the order, which begins a few ticks later.
+    axis.move_to(0.0, 3000.0).unwrap();
+    near(axis.wait_for_rest().unwrap().setpoint_mm, 0.0, 1e-6);
     let status = axis.disable().unwrap();
     assert!(!status.is_enabled);
     axis.close().unwrap();
