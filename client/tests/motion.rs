@@ -50,6 +50,9 @@ fn an_axis_is_enabled_moved_and_read() {
     assert!(status.is_moving, "{status:?}");
     near(status.velocity_mm_per_min, -3000.0, 150.0);
     near(axis.wait_for_rest().unwrap().setpoint_mm, -10.0, 1e-6);
+    // At once after the order, which begins a few ticks later.
+    axis.move_to(0.0, 3000.0).unwrap();
+    near(axis.wait_for_rest().unwrap().setpoint_mm, 0.0, 1e-6);
     let status = axis.disable().unwrap();
     assert!(!status.is_enabled);
     axis.close().unwrap();
@@ -181,4 +184,36 @@ fn the_same_seed_gives_the_same_run() {
         (bench.trace.len(), bench.outputs().estimate)
     };
     assert_eq!(run(), run());
+}
+
+#[test]
+fn the_origin_is_found_and_kept() {
+    let (_line, mut axis) = connected();
+    axis.enable().unwrap();
+    // Without a switch: it is told how that ended, once it stands.
+    let error = axis.home().unwrap_err();
+    assert!(
+        matches!(error, Error::Faulted(number) if number == Fault::HomingFailed as u8),
+        "{error}"
+    );
+    drop(axis);
+
+    let line = BenchLine::with_home_switch(-34.0);
+    let mut axis = line.open(Options::default());
+    axis.set_parameter("homing.search_direction", -1.0).unwrap();
+    axis.enable().unwrap();
+    axis.move_and_wait(-20.0, 6000.0).unwrap();
+    let status = axis.home().unwrap();
+    assert!(status.is_homed && status.is_planned, "{status:?}");
+    let origin = line.bench.borrow().way.axis.homing().origin().unwrap();
+    axis.move_and_wait(2.0, 1200.0).unwrap();
+    let at: f64 = line.bench.borrow().outputs().setpoint.position.to_num();
+    let origin: f64 = origin.to_num();
+    let mm = (at - origin) / line.bench.borrow().counts_per_mm;
+    near(mm, 2.0, 1e-3);
+    // Again, from where it is.
+    assert!(axis.home().unwrap().is_homed);
+    axis.disable().unwrap();
+    let error = axis.home().unwrap_err();
+    assert_eq!(error.refusal(), Some(Refusal::NotReady));
 }

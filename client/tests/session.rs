@@ -179,6 +179,8 @@ fn an_interruption_stops_the_axis_first() {
     );
     assert_eq!(line.bench.borrow().state(), State::Ready);
     assert!(!line.bench.borrow().outputs().moving);
+    let (_, farthest) = line.bench.borrow().extent_mm();
+    assert!(farthest < 80.0, "{farthest}");
     // No order comes after it, but the axis may be put out of control.
     let error = axis.move_to(0.0, 1000.0).unwrap_err();
     assert!(

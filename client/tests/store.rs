@@ -7,8 +7,8 @@ use std::io;
 use std::rc::Rc;
 use std::time::Duration;
 
-use crc::{CRC_32_ISO_HDLC, Crc};
 use leadscrew::params::AxisConfig;
+use leadscrew::protocol::frame::checksum;
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
@@ -16,8 +16,6 @@ use leadscrew::protocol::service::{Order, Passed, Port, Seen, Service};
 use leadscrew::settings::Settings;
 use leadscrew_client::{Axis, Kind, Line, Options};
 use support::rig::{IDENTITY, settings};
-
-const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// A board without an axis, with room for one thing.
 #[derive(Default)]
@@ -49,7 +47,7 @@ impl Port for Board {
                 kind,
                 version: 3,
                 length: self.stored.len() as u32,
-                crc: CRC.checksum(&self.stored),
+                crc: checksum(&self.stored),
             }),
             Request::ReadStored { offset, .. } => {
                 let rest = &self.stored[offset as usize..];
@@ -65,7 +63,7 @@ impl Port for Board {
             }
             Request::SaveBytes { length, crc, .. } => {
                 let bytes = &self.work[..length as usize];
-                if CRC.checksum(bytes) != crc {
+                if checksum(bytes) != crc {
                     return Err(Refusal::WrongChecksum);
                 }
                 self.stored = bytes.to_vec();

@@ -177,9 +177,12 @@ impl Axis {
         mut is_done: impl FnMut(&Status) -> Result<bool, Error>,
     ) -> Result<Status, Error> {
         self.look_until(what, advice, |connection, status| {
-            let is_faulted = status.state() == Some(State::Fault);
-            if is_faulted && status.fault_number != 0 {
-                return Err(Error::Faulted(status.fault_number));
+            if status.fault_number != 0 {
+                // Told when the axis stands.
+                return match status.state() {
+                    Some(State::Stopping | State::Moving) => Ok(false),
+                    _ => Err(Error::Faulted(status.fault_number)),
+                };
             }
             connection.check_lapse()?;
             is_done(status)

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crc::{CRC_32_ISO_HDLC, Crc};
+use leadscrew::protocol::frame::checksum;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
 use leadscrew::supervisor::Fault;
@@ -10,7 +10,6 @@ use leadscrew::supervisor::Fault;
 use super::Axis;
 use crate::error::Error;
 
-const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Bytes written in a request: they fit a frame with all else, and are whole words.
 const CHUNK: usize = 200;
 /// Time after which an axis that restarts does not answer any more.
@@ -257,7 +256,7 @@ impl Axis {
         self.order(&Request::SaveBytes {
             kind: kind as u8,
             length: bytes.len() as u32,
-            crc: CRC.checksum(bytes),
+            crc: checksum(bytes),
         })
     }
 

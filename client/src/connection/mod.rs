@@ -189,7 +189,7 @@ impl Connection {
             Request::SaveParameters {}
             | Request::SaveBytes { .. }
             | Request::Erase { .. }
-            | Request::TakeMap {} => lost.saturating_mul(FLASH_IS_SLOWER),
+            | Request::SaveMap {} => lost.saturating_mul(FLASH_IS_SLOWER),
             _ => lost,
         }
     }

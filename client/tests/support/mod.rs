@@ -38,10 +38,14 @@ pub struct Bench {
 
 impl Bench {
     pub fn new() -> Self {
+        Self::with(&BoardParams::default())
+    }
+
+    fn with(board: &BoardParams) -> Self {
         let mut settings = settings();
         let machine = MachineParams::z_16k20f3();
         Self {
-            board: Board::new(&BoardParams::default(), &machine, 1000.0, 1).unwrap(),
+            board: Board::new(board, &machine, 1000.0, 1).unwrap(),
             way: Way {
                 axis: CoreAxis::new(settings.validate().unwrap()),
                 enable: false,
@@ -117,6 +121,15 @@ impl BenchLine {
             is_lockstep: false,
             time: Duration::ZERO,
         }
+    }
+
+    /// The same with a home switch at that place.
+    pub fn with_home_switch(home_mm: f64) -> Self {
+        let mut board = BoardParams::default();
+        board.switches.home_mm = home_mm;
+        let line = Self::new();
+        *line.bench.borrow_mut() = Bench::with(&board);
+        line
     }
 
     /// An axis over this line, which stays in hand here.
