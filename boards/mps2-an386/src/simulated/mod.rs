@@ -35,6 +35,7 @@ use crate::handoff::{Giver, Handoff, Taker};
 use crate::interrupts::Interrupt;
 use crate::isr_cell::IsrCell;
 use crate::timer::{TIMER0, TIMER1, Timer};
+use crate::uart::Uart;
 
 /// The tick's distance behind the machine step, in 1/8 of the period.
 pub const TICK_PHASE: u32 = 6;
@@ -138,11 +139,11 @@ pub fn wire(job: Job, period: u32, ticks: Option<u32>) -> Ends {
     Ends { requests, records }
 }
 
-/// Unmasks the lines of the simulated axis and `more`, each with its priority.
+/// Unmasks the lines of the simulated axis and those of `uarts`, which have to be open.
 ///
 /// # Panics
 /// On the second call.
-pub fn unmask(more: &[(Interrupt, u8)]) {
+pub fn unmask(uarts: &[&Uart]) {
     let mut core = cortex_m::Peripherals::take().expect("main runs once");
     let lines = [
         (Interrupt::TIMER1, priority::TICK),
@@ -150,12 +151,14 @@ pub fn unmask(more: &[(Interrupt, u8)]) {
         (Interrupt::DUALTIMER, priority::TIME),
         (Interrupt::SPARE30, priority::REPORT),
     ];
-    for (line, priority) in lines.iter().chain(more) {
+    let uarts = uarts.iter().flat_map(|uart| uart.lines());
+    let uarts = uarts.map(|line| (line, priority::UART));
+    for (line, priority) in lines.into_iter().chain(uarts) {
         // SAFETY: all critical sections of the program mask by PRIMASK, so they hold at any priority; the handlers
         // share only what `Handoff`, `IsrCell`, atomics and the two ends of queues protect.
         unsafe {
-            core.NVIC.set_priority(*line, *priority);
-            NVIC::unmask(*line);
+            core.NVIC.set_priority(line, priority);
+            NVIC::unmask(line);
         }
     }
 }
