@@ -1,5 +1,6 @@
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::ExitStatus;
 use std::time::Duration;
 
 use crate::log::LogLine;
@@ -79,12 +80,76 @@ pub enum Error {
         /// What it had logged.
         log: Vec<LogLine>,
     },
+    /// A word of the guest's command line has a space.
+    #[error("`{word}`: the guest's command line cannot carry a space; use a path without one")]
+    Word {
+        /// The word.
+        word: String,
+    },
+    /// The port cannot be listened on.
+    #[error(
+        "cannot listen on 127.0.0.1:{port}: {source}; give another port, or 0 for any free one"
+    )]
+    Port {
+        /// The port asked for.
+        port: u16,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// QEMU ended before the guest had said what was waited for.
+    #[error("the guest has ended ({status})")]
+    Ended {
+        /// How QEMU ended.
+        status: ExitStatus,
+    },
+    /// QEMU ended before the guest was up.
+    #[error("the guest has not come up ({status}); its log:\n{}\n{stderr}", lines(.log))]
+    NotUp {
+        /// How QEMU ended.
+        status: ExitStatus,
+        /// What the guest had logged.
+        log: Vec<LogLine>,
+        /// What QEMU printed.
+        stderr: String,
+    },
+    /// QEMU has not told where its pseudo-terminal is.
+    #[error("{QEMU} has not opened a pseudo-terminal within {} s of wall time", .after.as_secs())]
+    NoTerminal {
+        /// The time it was given.
+        after: Duration,
+    },
+    /// The guest runs and does not come to its next barrier.
+    #[error("the guest has not come to its next barrier within {} s of wall time", .after.as_secs())]
+    NoBarrier {
+        /// The time it was given.
+        after: Duration,
+    },
+    /// More bytes than a barrier brings to the guest.
+    #[error("{found} bytes are too many for one exchange: send {most} at most")]
+    TooLong {
+        /// How many were to be sent.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// A FIFO could not be made or used.
+    #[error("cannot keep in step with the guest: {0}")]
+    Fifo(io::Error),
     /// A signal ended QEMU.
     #[error("{QEMU} was ended by a signal: {stderr}")]
     Signal {
         /// What QEMU printed.
         stderr: String,
     },
+}
+
+impl Error {
+    pub(crate) fn file(path: &Path, source: io::Error) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            source,
+        }
+    }
 }
 
 fn lines(log: &[LogLine]) -> String {

@@ -13,16 +13,26 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! [`Run`] goes to the end of a program. A [`Guest`] runs until it is told to end: its UARTs are on sockets or
+//! pseudo-terminals, or its link is a [`Lockstep`] line.
 #![forbid(unsafe_code)]
 
+mod call;
 mod error;
+mod files;
+mod guest;
 mod image;
+mod lockstep;
 mod log;
+mod process;
 mod run;
 mod sections;
 
 pub use error::Error;
+pub use guest::{Carrier, Endpoint, Guest, Start};
 pub use image::{BOARD, TARGET, build};
+pub use lockstep::{Lockstep, MOST_BYTES};
 pub use log::{LogLine, decode};
 pub use run::{LARGEST_SHIFT, Output, QEMU, Run};
 pub use sections::Sections;

@@ -3,6 +3,7 @@
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
+use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use semihosting::experimental::env;
 use semihosting::process::ExitCode;
@@ -36,6 +37,12 @@ pub fn exit_success() -> ! {
 /// Ends QEMU with exit code 1.
 pub fn exit_failure() -> ! {
     ExitCode::FAILURE.exit_process()
+}
+
+/// Starts the program anew, as after power on; what the board kept without power it keeps.
+pub fn restart() -> ! {
+    cortex_m::interrupt::disable();
+    SCB::sys_reset()
 }
 
 /// Logs once: a failure inside the logger comes back here and then just ends.

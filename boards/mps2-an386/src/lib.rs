@@ -4,6 +4,7 @@
 //! its own. All `unsafe` of the firmware is in this crate, each with its reason.
 #![no_std]
 
+pub mod carrier;
 mod exit;
 pub mod flash;
 pub mod handoff;
@@ -17,7 +18,7 @@ pub mod time_driver;
 pub mod timer;
 pub mod uart;
 
-pub use exit::{arguments, exit_failure, exit_success};
+pub use exit::{arguments, exit_failure, exit_success, restart};
 
 // Links the logger; it has no items to name.
 use defmt_semihosting as _;

@@ -150,6 +150,11 @@ impl Lockstep {
         count
     }
 
+    /// Whether all that was to be sent has gone at a barrier.
+    pub fn is_sent(&self) -> bool {
+        self.boxes.outbox.len() == HEADER_OUT
+    }
+
     /// Sends all of `bytes` at the next barrier if there is room for them, else nothing.
     pub fn send(&mut self, bytes: &[u8]) -> bool {
         self.boxes.outbox.extend_from_slice(bytes).is_ok()

@@ -16,17 +16,16 @@
 
 mod machine;
 
-use core::sync::atomic::AtomicU32;
-
 use cortex_m::peripheral::NVIC;
-use heapless::spsc::{Consumer, Producer, Queue};
-use leadscrew::axis::Axis;
+use heapless::spsc::{Consumer, Queue};
 use leadscrew::telemetry::Record;
-use leadscrew_app::axis_control::{AxisControl, Request};
+use leadscrew_app::axis_control::AxisControl;
+use leadscrew_app::report::Report;
+use leadscrew_app::store::Interlock;
 use leadscrew_app::telemetry::Ready;
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
 use leadscrew_hal_mock::scenario::Fate;
-use static_cell::{ConstStaticCell, StaticCell};
+use static_cell::StaticCell;
 
 pub use machine::{MachineState, Plant};
 
@@ -35,15 +34,14 @@ use crate::handoff::{Giver, Handoff, Taker};
 use crate::interrupts::Interrupt;
 use crate::isr_cell::IsrCell;
 use crate::timer::{TIMER0, TIMER1, Timer};
+use crate::uart::Uart;
 
 /// The tick's distance behind the machine step, in 1/8 of the period.
 pub const TICK_PHASE: u32 = 6;
 /// A tick has to end within this part of the period, in 1/8: before the next machine step.
 const TICK_BUDGET: u32 = 1;
-/// Records that thread mode may be behind.
+/// Ticks that thread mode may be behind.
 const QUEUE: usize = 64;
-/// Requests that may wait.
-const REQUEST_QUEUE: usize = 8;
 
 /// Priorities of the interrupts; the lower, the more urgent.
 pub mod priority {
@@ -66,25 +64,17 @@ pub static MACHINE: IsrCell<MachineState> = IsrCell::empty();
 pub static COUNTERS: Counters = Counters::new();
 /// "There are records."
 pub static READY: Ready = Ready::new();
-/// Requests that did not fit, or that the axis did not take.
-pub static REFUSED: AtomicU32 = AtomicU32::new(0);
+/// Keeps axis and store apart.
+pub static INTERLOCK: Interlock = Interlock::new();
 
 /// What is simulated.
 pub struct Job {
     /// The machine, with its board or alone.
     pub plant: Plant,
-    /// The axis on it.
-    pub axis: Axis<'static>,
+    /// The axis on it, which is to count in [`COUNTERS`] and to heed [`INTERLOCK`].
+    pub control: AxisControl<Plant>,
     /// What is done to the plant.
     pub fate: Fate<'static>,
-}
-
-/// What thread mode holds.
-pub struct Ends {
-    /// Requests to the tick.
-    pub requests: Producer<'static, Request>,
-    /// What the ticks left.
-    pub records: Consumer<'static, Record>,
 }
 
 struct TickState {
@@ -112,20 +102,17 @@ pub const fn period(tick_hz: u32) -> u32 {
 }
 
 /// Hands every interrupt its state; to be called once, with interrupts masked. After `ticks` the timers stop.
-pub fn wire(job: Job, period: u32, ticks: Option<u32>) -> Ends {
+/// Gives what the ticks leave.
+pub fn wire(job: Job, period: u32, ticks: Option<u32>) -> Consumer<'static, Report> {
     static INPUTS: StaticCell<Handoff<Plant>> = StaticCell::new();
     static OUTPUTS: StaticCell<Handoff<Record>> = StaticCell::new();
-    static RECORDS: StaticCell<Queue<Record, QUEUE>> = StaticCell::new();
-    static REQUESTS: ConstStaticCell<Queue<Request, REQUEST_QUEUE>> =
-        ConstStaticCell::new(Queue::new());
+    static REPORTS: StaticCell<Queue<Report, QUEUE>> = StaticCell::new();
 
     let (to_tick, from_machine) = INPUTS.init(Handoff::new(job.plant)).split();
     let (to_machine, from_tick) = OUTPUTS.init(Handoff::new(Record::default())).split();
-    let (producer, records) = RECORDS.init(Queue::new()).split();
-    let (requests, asked) = REQUESTS.take().split();
-    let control = AxisControl::new(job.axis, asked, &REFUSED);
+    let (producer, reports) = REPORTS.init(Queue::new()).split();
     let tick = TickState {
-        runtime: Runtime::new(control, producer, &COUNTERS, period / 8 * TICK_BUDGET),
+        runtime: Runtime::new(job.control, producer, &COUNTERS, period / 8 * TICK_BUDGET),
         inputs: from_machine,
         outputs: to_machine,
         ticks_left: ticks,
@@ -135,14 +122,14 @@ pub fn wire(job: Job, period: u32, ticks: Option<u32>) -> Ends {
         TICK.put(tick) && MACHINE.put(machine),
         "interrupts are masked"
     );
-    Ends { requests, records }
+    reports
 }
 
-/// Unmasks the lines of the simulated axis and `more`, each with its priority.
+/// Unmasks the lines of the simulated axis and those of `uarts`, which have to be open.
 ///
 /// # Panics
 /// On the second call.
-pub fn unmask(more: &[(Interrupt, u8)]) {
+pub fn unmask(uarts: &[&Uart]) {
     let mut core = cortex_m::Peripherals::take().expect("main runs once");
     let lines = [
         (Interrupt::TIMER1, priority::TICK),
@@ -150,12 +137,14 @@ pub fn unmask(more: &[(Interrupt, u8)]) {
         (Interrupt::DUALTIMER, priority::TIME),
         (Interrupt::SPARE30, priority::REPORT),
     ];
-    for (line, priority) in lines.iter().chain(more) {
+    let uarts = uarts.iter().flat_map(|uart| uart.lines());
+    let uarts = uarts.map(|line| (line, priority::UART));
+    for (line, priority) in lines.into_iter().chain(uarts) {
         // SAFETY: all critical sections of the program mask by PRIMASK, so they hold at any priority; the handlers
         // share only what `Handoff`, `IsrCell`, atomics and the two ends of queues protect.
         unsafe {
-            core.NVIC.set_priority(*line, *priority);
-            NVIC::unmask(*line);
+            core.NVIC.set_priority(line, priority);
+            NVIC::unmask(line);
         }
     }
 }
@@ -192,12 +181,12 @@ impl TickState {
         }
         let runtime = &mut self.runtime;
         let clock = TickClock(&TIMER1);
-        let record = self
+        let report = self
             .inputs
             .take(|inputs| runtime.run(&clock, Some(inputs)))
             .unwrap_or_else(|| runtime.run(&clock, None));
         // Not taken: the machine did not run; it has no inputs for the next tick either, which counts.
-        let _ = self.outputs.give(|place| *place = record);
+        let _ = self.outputs.give(|place| *place = report.record);
         if let Some(left) = &mut self.ticks_left {
             *left -= 1;
             if *left == 0 {

@@ -49,7 +49,7 @@ async fn main(spawner: Spawner) {
     let tick_hz = course.tick_hz as u32;
     let period = simulated::period(tick_hz);
     let ticks = options.ticks.unwrap_or(course.ticks);
-    let ends = simulated::wire(course.job, period, Some(ticks));
+    let reports = simulated::wire(course.job, period, Some(ticks));
     // A plant with its troubles takes a while to be put in its place.
     time_driver::start();
     simulated::unmask(&[]);
@@ -59,12 +59,12 @@ async fn main(spawner: Spawner) {
     };
     let desk = match course.panel {
         Panel::Script(script) => {
-            spawner.spawn(thread::operate(ends.requests, script).expect("spawned once"));
+            spawner.spawn(thread::operate(course.ends.requests, script).expect("spawned once"));
             None
         }
-        Panel::Desk(desk) => Some((desk, ends.requests)),
+        Panel::Desk(desk) => Some((desk, course.ends.requests)),
     };
-    spawner.spawn(thread::report(ends.records, plan, desk).expect("spawned once"));
+    spawner.spawn(thread::report(reports, course.ends.outcomes, plan, desk).expect("spawned once"));
     defmt::info!("axis: {=u32} ticks at {=u32} Hz", ticks, tick_hz);
     simulated::start(period);
 }

@@ -1,30 +1,34 @@
 //! Thread mode: the person at the panel, and the report.
 
-use core::sync::atomic::Ordering;
+use core::sync::atomic::{AtomicU32, Ordering};
 
-use board_mps2_an386::simulated::{COUNTERS, MACHINE, READY, REFUSED};
+use board_mps2_an386::simulated::{COUNTERS, MACHINE, READY};
 use board_mps2_an386::{exit_failure, exit_success};
 use embassy_time::{Instant, Timer};
 use heapless::spsc::{Consumer, Producer};
 use leadscrew::axis;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::{Request, What};
+use leadscrew_app::queues::Outcome;
+use leadscrew_app::report::Report;
 use leadscrew_app::telemetry::{self, Plan, Sink};
 use leadscrew_app::tick::Counts;
 use leadscrew_hal_mock::scenario::{Desk, Order, ScenarioError, Script};
+
+/// Requests that did not fit, or that the axis did not take. Thread mode alone counts.
+static REFUSED: AtomicU32 = AtomicU32::new(0);
+
+fn note_refused(more: u32) {
+    REFUSED.store(REFUSED.load(Ordering::Relaxed) + more, Ordering::Relaxed);
+}
 
 /// The person at the panel: enables the axis and hands over each move once the one before has begun.
 #[embassy_executor::task]
 pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
     let mut ask = |request| {
-        if requests.enqueue(request).is_err() {
-            REFUSED.store(REFUSED.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
-        }
+        note_refused(u32::from(requests.enqueue(request).is_err()));
     };
-    ask(Request {
-        at: 0,
-        what: What::Enable(true),
-    });
+    ask(Request::now(What::Enable(true)));
     let mut begun = 1;
     for next in script.moves {
         while COUNTERS.read().ticks < begun {
@@ -32,6 +36,7 @@ pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
         }
         ask(Request {
             at: begun,
+            ticket: 0,
             what: What::Axis(axis::Request::Queue {
                 plan: next.profile,
                 start: next.start,
@@ -45,17 +50,19 @@ pub async fn operate(mut requests: Producer<'static, Request>, script: Script) {
 /// Follows the records to the end of the run and ends the program.
 #[embassy_executor::task]
 pub async fn report(
-    mut records: Consumer<'static, Record>,
+    mut reports: Consumer<'static, Report>,
+    outcomes: Consumer<'static, Outcome>,
     plan: Plan,
     desk: Option<(Desk<'static>, Producer<'static, Request>)>,
 ) {
     let mut trace = Trace {
         records: 0,
         last: Record::default(),
+        outcomes,
         desk,
     };
     trace.open();
-    let counts = telemetry::run(&mut trace, &mut records, &READY, &COUNTERS, plan).await;
+    let counts = telemetry::run(&mut trace, &mut reports, &READY, &COUNTERS, plan).await;
     defmt::info!(
         "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
         counts.ticks,
@@ -92,6 +99,7 @@ pub async fn report(
 struct Trace {
     records: u32,
     last: Record,
+    outcomes: Consumer<'static, Outcome>,
     desk: Option<(Desk<'static>, Producer<'static, Request>)>,
 }
 
@@ -115,20 +123,32 @@ impl Trace {
                 Order::Axis(request) => What::Axis(request),
                 Order::Nothing => return,
             };
-            refused += u32::from(requests.enqueue(Request { at, what }).is_err());
+            refused += u32::from(
+                requests
+                    .enqueue(Request {
+                        at,
+                        ticket: 0,
+                        what,
+                    })
+                    .is_err(),
+            );
         };
         let planned = work(desk, &mut send);
         refused += u32::from(planned.is_err());
-        REFUSED.store(REFUSED.load(Ordering::Relaxed) + refused, Ordering::Relaxed);
+        note_refused(refused);
     }
 }
 
 impl Sink for Trace {
-    type Record = Record;
+    type Record = Report;
 
-    fn record(&mut self, record: &Record) {
+    fn record(&mut self, report: &Report) {
+        let record = &report.record;
         self.records += 1;
         self.last = *record;
+        while let Some(outcome) = self.outcomes.dequeue() {
+            note_refused(u32::from(outcome.result.is_err()));
+        }
         self.operate(|desk, send| desk.follow(record, send));
     }
 
