@@ -1,5 +1,6 @@
 //! The command line.
 
+mod axis;
 mod shared;
 
 use std::path::PathBuf;
@@ -8,11 +9,13 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use leadscrew::estimator::EstimatorConfig;
 
-pub use self::shared::{BenchArgs, ChannelArgs, OutputArgs, SimulatedArgs};
+pub use self::axis::AxisCommand;
+pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
+use crate::axis::PortArgs;
 use crate::command::tune_filter::TuneFilterArgs;
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 the job failed, 2 bad usage";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 the job failed, 2 bad usage, 3 the axis was lost";
 
 fn estimator_names() -> PossibleValuesParser {
     PossibleValuesParser::new(EstimatorConfig::NAMES)
@@ -25,6 +28,9 @@ fn estimator_names() -> PossibleValuesParser {
 #[derive(Debug, Parser)]
 #[command(name = "leadscrew", version, about, after_help = EXIT_CODES)]
 pub struct Cli {
+    /// Where the axis is, for what works on one
+    #[command(flatten)]
+    pub port: PortArgs,
     /// What to do.
     #[command(subcommand)]
     pub command: Option<Command>,
@@ -51,6 +57,9 @@ pub enum Command {
     Autotune(AutotuneArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
+    /// What works on an axis
+    #[command(flatten)]
+    Axis(AxisCommand),
 }
 
 /// Arguments of `identify`.

@@ -41,6 +41,9 @@ pub enum CommandError {
     /// Standard output cannot be written.
     #[error("the report cannot be printed: {0}")]
     Print(std::io::Error),
+    /// The axis does not do it, or cannot be reached.
+    #[error(transparent)]
+    Axis(#[from] leadscrew_client::Error),
     /// Something is wrong with the data.
     #[error("{0}")]
     Data(String),
@@ -53,11 +56,21 @@ impl CommandError {
         move |reason| Self::Write { file, reason }
     }
 
-    /// 2 for bad usage, 1 for a job that failed.
+    /// 2 for bad usage, 3 for an axis that was lost, 1 for another job that failed.
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
+        use leadscrew_client::Error as AxisError;
         match self {
-            Self::Usage(_) | Self::Scenario(_) | Self::Plot(PlotError::Extension { .. }) => 2,
+            Self::Axis(error) if error.is_lost() => 3,
+            Self::Axis(
+                AxisError::NoSuchPort { .. }
+                | AxisError::UnknownParameter { .. }
+                | AxisError::ParameterOutOfRange { .. }
+                | AxisError::NoNumber { .. },
+            )
+            | Self::Usage(_)
+            | Self::Scenario(_)
+            | Self::Plot(PlotError::Extension { .. }) => 2,
             _ => 1,
         }
     }

@@ -2,6 +2,7 @@
 //! encoder, with reports and plots.
 
 pub mod accuracy;
+pub mod axis;
 pub mod axis_file;
 pub mod calibration;
 pub mod cli;

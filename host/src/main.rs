@@ -6,12 +6,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::{
-    accuracy, autotune, calibrate_encoder, demo, identify, replay, sim, sim_encoder, tracking,
-    tune_filter,
+    accuracy, autotune, axis, calibrate_encoder, demo, identify, replay, sim, sim_encoder,
+    tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let Cli { port, command } = Cli::parse();
+    let done = match command {
         None => demo::run(),
         Some(Command::Sim(args)) => sim::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
         Some(Command::Identify(args)) => identify::run(&args),
         Some(Command::Autotune(args)) => autotune::run(&args),
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
+        Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

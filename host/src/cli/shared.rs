@@ -104,3 +104,11 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
 }
+
+/// The one option of a command that only reports.
+#[derive(Debug, Args)]
+pub struct JsonArgs {
+    /// Print the report as JSON, alone, on standard output
+    #[arg(long)]
+    pub json: bool,
+}

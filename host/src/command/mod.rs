@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod autotune;
+pub mod axis;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;

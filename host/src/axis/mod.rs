@@ -1,0 +1,6 @@
+//! A real axis, or one in QEMU or in this process, behind the tool's port.
+
+mod open;
+mod qemu_line;
+
+pub use open::{PortArgs, open};
