@@ -7,7 +7,6 @@ use board_mps2_an386::simulated::{COUNTERS, INTERLOCK, Plant};
 use board_mps2_an386::uart::{self, UART1};
 use leadscrew::compensation::Stretch;
 use leadscrew::compensation::table::POINTS;
-use leadscrew::params::AxisParams;
 use leadscrew::protocol::reply::{
     CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
 };
@@ -91,7 +90,7 @@ fn identity(words: &Words) -> Identity {
 }
 
 /// What carries the link, and Modbus on its UART.
-pub fn lines(words: &Words, params: &AxisParams) -> (Carrier, ModbusLine) {
+pub fn lines(words: &Words, factory: Settings) -> (Carrier, ModbusLine) {
     static MODBUS: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
     let Ok(carrier) = Carrier::open(words.lockstep.as_deref(), BAUD)
         .inspect_err(|error| defmt::error!("lockstep: {}", error))
@@ -107,7 +106,7 @@ pub fn lines(words: &Words, params: &AxisParams) -> (Carrier, ModbusLine) {
     };
     let modbus = ModbusLine {
         line: UART1.open(BAUD, MODBUS.take()),
-        unit: Modbus::new(config.with_silence_us(SILENCE_US), params),
+        unit: Modbus::new(config.with_silence_us(SILENCE_US), factory),
     };
     (carrier, modbus)
 }

@@ -63,7 +63,7 @@ async fn main(spawner: Spawner) {
     let tick_hz = tick_hz as u32;
     let period = simulated::period(tick_hz);
     let reports = simulated::wire(job, period, words.options.ticks);
-    let (carrier, modbus) = boot::lines(&words, &factory.axis);
+    let (carrier, modbus) = boot::lines(&words, factory);
     simulated::unmask(&[&UART0, &UART1]);
     let server = Server::new(carrier, modbus, link, reports, words.options.ticks);
     defmt::info!("linked: {=u32} Hz", tick_hz);
