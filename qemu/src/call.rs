@@ -13,7 +13,7 @@ pub(crate) struct Call {
     pub(crate) image: PathBuf,
     /// One instruction takes 2^shift ns of virtual time.
     pub(crate) shift: u32,
-    /// Time in which the guest idles passes on the wall too, else not at all.
+    /// Never ahead of the wall.
     pub(crate) is_paced: bool,
     /// Words for the guest's command line.
     pub(crate) words: Vec<String>,
@@ -54,12 +54,16 @@ impl Call {
             semihosting.push_str(",arg=");
             semihosting.push_str(&escape_commas(word));
         }
-        let sleep = if self.is_paced { "" } else { ",sleep=off" };
+        let pace = if self.is_paced {
+            "align=on"
+        } else {
+            "align=off,sleep=off"
+        };
         let mut command = Command::new(QEMU);
         command
             .args(["-machine", MACHINE, "-display", "none", "-monitor", "none"])
             .arg("-icount")
-            .arg(format!("shift={},align=off{sleep}", self.shift))
+            .arg(format!("shift={},{pace}", self.shift))
             .args(["-chardev", &file_chardev("console", console)])
             .args(["-semihosting-config", &semihosting]);
         for (number, uart) in self.uarts.iter().enumerate() {

@@ -6,6 +6,9 @@ use crate::{Error, LogLine, decode};
 
 /// How QEMU tells where a pseudo-terminal is.
 const REDIRECTED: &str = "char device redirected to ";
+/// How it tells that a paced guest is behind the wall; the line ends with [`LATE_END`].
+const LATE: &str = "Warning: The guest is now late by ";
+const LATE_END: &str = " seconds\n";
 
 /// The files of a run, in a folder of its own.
 #[derive(Debug)]
@@ -41,17 +44,11 @@ impl RunFiles {
     /// What the guest has logged so far, as it came.
     ///
     /// QEMU sends a guest's `:tt` to the semihosting chardev or, 7.2 does, to its own standard output; there it tells
-    /// of pseudo-terminals first.
+    /// of pseudo-terminals and of delays, too.
     pub(crate) fn log_bytes(&self) -> Result<Vec<u8>, Error> {
         let mut bytes = self.console.read_if_there()?;
         let stdout = self.stdout.read_if_there()?;
-        let mut rest = stdout.as_slice();
-        while rest.starts_with(REDIRECTED.as_bytes())
-            && let Some(end) = rest.iter().position(|byte| *byte == b'\n')
-        {
-            rest = &rest[end + 1..];
-        }
-        bytes.extend_from_slice(rest);
+        bytes.extend(of_guest(&stdout));
         Ok(bytes)
     }
 
@@ -70,6 +67,26 @@ impl RunFiles {
         });
         Ok(paths.next())
     }
+}
+
+/// What of QEMU's standard output is the guest's.
+fn of_guest(mut stdout: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while let Some((byte, rest)) = stdout.split_first() {
+        let told = [(REDIRECTED, ")\n"), (LATE, LATE_END)];
+        let told = told.into_iter().find_map(|(begin, end)| {
+            let rest = stdout.strip_prefix(begin.as_bytes())?;
+            let at = rest
+                .windows(end.len())
+                .position(|part| part == end.as_bytes())?;
+            Some(&rest[at + end.len()..])
+        });
+        stdout = told.unwrap_or_else(|| {
+            bytes.push(*byte);
+            rest
+        });
+    }
+    bytes
 }
 
 impl RunFile {
@@ -102,12 +119,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pseudo_terminals_are_found_and_kept_out_of_the_log() {
+    fn what_qemu_tells_is_kept_out_of_the_log() {
         let files = RunFiles::new().unwrap();
         let lines = "char device redirected to /dev/pts/3 (label uart0)\n\
                      char device redirected to /dev/pts/4 (label uart1)\n";
         let mut bytes = lines.as_bytes().to_vec();
-        bytes.extend([0x7f, b'\n', 0]);
+        bytes.extend([0x7f, b'\n']);
+        bytes.extend(b"Warning: The guest is now late by 0.2 to 0.3 seconds\n\0");
         fs::write(&files.stdout.path, &bytes).unwrap();
         let pty = |name| files.pty(name).unwrap();
         assert_eq!(pty("uart1"), Some(PathBuf::from("/dev/pts/4")));

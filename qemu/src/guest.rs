@@ -96,8 +96,7 @@ impl Start {
         self.arg(format!("flash={}", path.display()))
     }
 
-    /// Idle time passes on the wall too: for people, who live there. Without it idle time is skipped, and a guest that
-    /// has little to do is ahead of the wall.
+    /// Never ahead of the wall: for people, who live there. How far the computer keeps up is another matter.
     #[must_use]
     pub fn paced(mut self) -> Self {
         self.is_paced = true;
@@ -195,6 +194,14 @@ impl Guest {
     /// The log cannot be read.
     pub fn log_bytes(&self) -> Result<Vec<u8>, Error> {
         self.files.log_bytes()
+    }
+
+    /// What QEMU itself had to say so far.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn stderr(&self) -> Result<String, Error> {
+        self.files.stderr.read_text()
     }
 
     /// How QEMU ended, if it has.

@@ -178,9 +178,9 @@ fn what_was_saved_outlives_a_power_cut_at_any_moment() {
         }
         guest.kill().unwrap();
         let whole = told.split_inclusive(|byte| *byte == b'\n');
-        let whole = whole.filter(|line| line.ends_with(b"\n"));
+        let mut whole = whole.filter(|line| line.ends_with(b"\n"));
         let saved = whole
-            .last()
+            .next_back()
             .map(|line| String::from_utf8_lossy(line).trim().parse::<i32>());
         let saved = saved.unwrap().unwrap();
         assert!(saved > last);

@@ -44,6 +44,7 @@ fn SPARE30() {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    time_driver::start();
     let words = Words::of_command_line();
     let Ok(factory) = axis::factory(&words) else {
         defmt::error!("the axis does not fit its machine: choose another tick-hz or estimator");
@@ -63,7 +64,6 @@ async fn main(spawner: Spawner) {
     let period = simulated::period(tick_hz);
     let reports = simulated::wire(job, period, words.options.ticks);
     let (carrier, modbus) = boot::lines(&words, factory);
-    time_driver::start();
     simulated::unmask(&[&UART0, &UART1]);
     let server = Server::new(carrier, modbus, link, reports, words.options.ticks);
     defmt::info!("linked: {=u32} Hz", tick_hz);
