@@ -25,7 +25,11 @@ mod options;
 mod port;
 mod status;
 
-pub use axis::{Axis, FaultPage, Kind, Parameter, Records, Samples, Stored, TickCounters, Value};
+pub use axis::{
+    Axis, ExperimentPhase, ExperimentStatus, FaultPage, Kind, Learned, LearningPhase,
+    LearningStatus, Parameter, Records, Samples, ScopePhase, ScopeStatus, Stored, TickCounters,
+    Value,
+};
 pub use connection::{Connection, Sample};
 pub use error::{Error, Refused};
 pub use identity::Identity;

@@ -107,7 +107,7 @@ impl Line for BoardLine {
                 ..Seen::default()
             };
             service.receive(out, &seen, &mut *board, &mut |frame| {
-                received.extend_from_slice(frame)
+                received.extend_from_slice(frame);
             });
         } else {
             board.away -= 1;

@@ -1,12 +1,18 @@
 //! An axis in the units of people.
 
+mod experiment;
+mod learning;
 mod motion;
 mod parameters;
 mod records;
+mod scope;
 mod store;
 
+pub use experiment::{ExperimentPhase, ExperimentStatus};
+pub use learning::{Learned, LearningPhase, LearningStatus};
 pub use parameters::{Parameter, Value};
 pub use records::{Records, Samples};
+pub use scope::{ScopePhase, ScopeStatus};
 pub use store::{FaultPage, Kind, Stored, TickCounters};
 
 use leadscrew::protocol::reply::Reply;

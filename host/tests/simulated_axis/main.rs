@@ -1,3 +1,4 @@
 //! The firmware in this process, over its link.
 
+mod instruments;
 mod session;

@@ -7,7 +7,7 @@ use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::{Base, MoveAndBack};
 use leadscrew_host::simulated_axis::{FlashImage, SimulatedAxis};
 
-fn axis(flash: &FlashImage) -> Axis {
+pub fn axis(flash: &FlashImage) -> Axis {
     let line = SimulatedAxis::new(Base::Full, 1000.0, 1, flash.clone()).unwrap();
     Axis::open(line, Options::default()).unwrap()
 }
@@ -27,7 +27,7 @@ impl Values for Numbers {
 }
 
 /// A loop for the reference machine.
-fn tuned() -> Vec<(String, f64)> {
+pub fn tuned() -> Vec<(String, f64)> {
     let machine = MachineParams::z_16k20f3();
     let scenario = MoveAndBack::standard(1000.0);
     let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
