@@ -47,7 +47,6 @@ fn busy() -> View {
             travel: None,
             is_planned: true,
             dropped_plans: 0,
-            ..Seen::default()
         },
         scale: AxisScale::new(400.0, 2_000.0).unwrap(),
         percent: 120,
