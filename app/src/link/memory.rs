@@ -53,6 +53,10 @@ impl Memory {
 pub(super) type MapPlaces = heapless::Vec<&'static mut [u8; MAP_BYTES], MAPS>;
 
 /// Who has the work memory.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one, and there is no heap"
+)]
 pub(super) enum Lent {
     /// Nobody. What was recorded last may be in it.
     Free(Work<'static>),
