@@ -16,6 +16,19 @@
 //!
 //! [`Run`] goes to the end of a program. A [`Guest`] runs until it is told to end: its UARTs are on sockets or
 //! pseudo-terminals, or its link is a [`Lockstep`] line.
+//!
+//! ```no_run
+//! # fn main() -> Result<(), leadscrew_qemu::Error> {
+//! let image = leadscrew_qemu::build("linked", "firmware")?;
+//! let mut guest = leadscrew_qemu::Start::new(image).lockstep().start()?;
+//! let mut line = guest.take_lockstep().expect("it is in lockstep");
+//! // The axis gets these bytes, runs ten ticks, and says what it has to say.
+//! let (ticks, bytes) = line.exchange(10, b"\x00")?;
+//! # let _ = (ticks, bytes);
+//! guest.kill()?;
+//! # Ok(())
+//! # }
+//! ```
 #![forbid(unsafe_code)]
 
 mod call;

@@ -50,8 +50,10 @@ impl Lockstep {
         self.barrier().map(drop)
     }
 
-    /// Gives the guest `bytes` and lets it run for `ticks`, 1 or more; then the tick that it has come to and what it
-    /// sent. 0 ticks end the guest's program, which then is [`Error::Ended`].
+    /// Gives the guest `bytes` and lets it run for `ticks`, 1 or more; then the number of ticks that have run since its
+    /// start, and what it sent. The axis counts its ticks from 0: it tells of one less.
+    ///
+    /// 0 ticks end the guest's program, which then is [`Error::Ended`].
     ///
     /// A tick that is smaller than the one before is that of a guest that has restarted.
     ///

@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 use leadscrew::protocol::client::{Answer, Client};
-use leadscrew::protocol::reply::{ENABLED, HOMED, Reply};
+use leadscrew::protocol::reply::{ENABLED, HOMED, PLANNED, Reply};
 use leadscrew::protocol::request::Request;
 use leadscrew_qemu::{Carrier, Endpoint, Error, Guest, Lockstep, Start, build};
 
@@ -116,7 +116,10 @@ impl Tool {
         self.ask(&Request::Enable {});
         self.until(3_000, |tool| tool.flags & ENABLED != 0);
         self.ask(&Request::Home {});
-        self.until(60_000, |tool| tool.flags & HOMED != 0);
+        // It still comes to rest when it is.
+        self.until(60_000, |tool| {
+            tool.flags & (HOMED | PLANNED) == HOMED | PLANNED
+        });
     }
 }
 
