@@ -47,9 +47,20 @@ pub struct Report {
     pub missed: u16,
     /// The scope was triggered, and goes on.
     pub scope_triggered: bool,
+    /// It is no tick: one was missed, and nothing else here is true.
+    pub is_missed: bool,
 }
 
 impl Report {
+    /// A tick that was missed: the drive is off.
+    #[must_use]
+    pub fn of_missed_tick() -> Self {
+        Self {
+            is_missed: true,
+            ..Self::default()
+        }
+    }
+
     /// The tick that `axis` has just done.
     #[must_use]
     pub fn of(axis: &Axis<'_>) -> Self {
@@ -66,6 +77,7 @@ impl Report {
             indexes: Indexes::default(),
             missed: 0,
             scope_triggered: false,
+            is_missed: false,
         }
     }
 }

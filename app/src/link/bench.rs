@@ -2,6 +2,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
+use leadscrew::axis;
 use leadscrew::capture::Unwrapper;
 use leadscrew::params::AxisConfig;
 use leadscrew::protocol::refusal::Refusal;
@@ -49,8 +50,8 @@ pub(super) struct Bench<F: NorFlash> {
     /// An experiment was ordered, and its first tick not seen yet; or it is being recorded.
     pub is_recording: bool,
     pub batch: Option<Batch>,
-    /// The session that the stream is for; 0 until it is known.
-    pub stream_session: u32,
+    /// The session that is open.
+    pub session: u32,
     /// The stream is on its way to the tick.
     pub stream_ticket: Option<Ticket>,
     pub next_ticket: Ticket,
@@ -78,6 +79,22 @@ impl<F: NorFlash> Bench<F> {
         }
         self.fetch_scope();
         self.learn();
+    }
+
+    /// Another session begins without what the one before left behind: its stream, and an experiment that has ended on an
+    /// axis that is off by now.
+    pub fn enter(&mut self, session: u32) {
+        if self.session == session {
+            return;
+        }
+        self.session = session;
+        self.end_stream();
+        let experiment = self.report.experiment;
+        let has_ended = experiment.is_some_and(|experiment| experiment.ending.is_some());
+        if has_ended && !self.seen.enabled {
+            // With a full queue the tool ends it itself.
+            let _ = self.tell(What::Axis(axis::Request::ReleaseExperiment));
+        }
     }
 
     /// Asks the tick for something of which no outcome is waited for.

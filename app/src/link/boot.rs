@@ -130,7 +130,7 @@ impl<F: NorFlash> Boot<F> {
             is_torn: false,
             is_recording: false,
             batch: None,
-            stream_session: 0,
+            session: 0,
             stream_ticket: None,
             next_ticket: 0,
             wants_restart: false,

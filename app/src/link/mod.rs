@@ -47,6 +47,10 @@ impl<F: NorFlash> Link<F> {
     /// Takes the report of a tick.
     pub fn report(&mut self, report: &Report, send: &mut Send<'_>) {
         let Self { service, bench, .. } = self;
+        if report.is_missed {
+            // The next one tells by its count of missed ticks.
+            return;
+        }
         bench.take(report);
         if let Some(frame) = service.record(&report.record)
             && !send(frame)
@@ -76,7 +80,6 @@ impl<F: NorFlash> Link<F> {
                 send(frame);
             });
         }
-        bench.end_stream_of_other_than(service.session());
         bench.stream(&mut |body| {
             if !send(service.samples(body)) {
                 service.note_record_lost();
@@ -91,6 +94,8 @@ impl<F: NorFlash> Link<F> {
         service.receive(bytes, &seen, bench, &mut |frame| {
             send(frame);
         });
+        // Before anything can be asked in it: who asks knows its number by a frame that went out just now.
+        bench.enter(service.session());
     }
 
     /// True once a restart was asked for, and acknowledged: when what was sent is out, start the firmware anew.

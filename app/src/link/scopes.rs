@@ -202,7 +202,6 @@ impl<F: NorFlash> Bench<F> {
         self.stream_ticket = Some(self.ask(What::Stream(Some(stream)))?);
         let patience = (self.tick_hz * PATIENCE_S) as u32;
         self.batch = Some(Batch::new(numbers.len(), every, patience));
-        self.stream_session = 0;
         Ok(())
     }
 
@@ -215,14 +214,8 @@ impl<F: NorFlash> Bench<F> {
     }
 
     /// Ends the stream of a session that is not open any more.
-    pub fn end_stream_of_other_than(&mut self, session: u32) {
-        if self.batch.is_none() {
-            return;
-        }
-        if self.stream_session == 0 {
-            self.stream_session = session;
-        }
-        if self.stream_session != session && self.tell(What::Stream(None)).is_ok() {
+    pub fn end_stream(&mut self) {
+        if self.batch.is_some() && self.tell(What::Stream(None)).is_ok() {
             self.batch = None;
         }
     }

@@ -67,7 +67,8 @@ struct Firmware {
     reports: Consumer<'static, Report>,
     link: Link<FlashImage>,
     loaded: Loaded,
-    plant: Plant,
+    /// A machine is large: on the heap, so that whoever has an axis needs no large stack.
+    plant: Box<Plant>,
     put_out: Record,
 }
 
@@ -75,7 +76,7 @@ struct Firmware {
 pub struct SimulatedAxis {
     scenario: Scenario<'static>,
     flash: FlashImage,
-    firmware: Firmware,
+    firmware: Box<Firmware>,
     ticks: u64,
     to_axis: VecDeque<u8>,
     to_tool: VecDeque<u8>,
@@ -182,8 +183,14 @@ impl SimulatedAxis {
     }
 }
 
+#[inline(never)]
+fn plant(scenario: &Scenario<'static>) -> Result<Box<Plant>, ScenarioError> {
+    Ok(Box::new(Plant(World::new(&scenario.plant(), scenario)?)))
+}
+
 impl Firmware {
-    fn start(scenario: &Scenario<'static>, flash: FlashImage) -> Result<Self, ScenarioError> {
+    #[inline(never)]
+    fn start(scenario: &Scenario<'static>, flash: FlashImage) -> Result<Box<Self>, ScenarioError> {
         let estimator = EstimatorConfig::by_name(ESTIMATOR)?;
         let mut factory = Settings::new(estimator.ok_or(ScenarioError::NoSuchEstimator)?);
         factory.axis.tick_hz = scenario.tick_hz;
@@ -215,14 +222,14 @@ impl Firmware {
         let (control, link, loaded) = boot.start()?;
         let reports: &'static mut Queue<Report, REPORTS> = Box::leak(Box::new(Queue::new()));
         let (producer, reports) = reports.split();
-        Ok(Self {
+        Ok(Box::new(Self {
             runtime: Runtime::new(control, producer, counters, 1),
             reports,
             link,
             loaded,
-            plant: Plant(World::new(&scenario.plant(), scenario)?),
+            plant: plant(scenario)?,
             put_out: Record::default(),
-        })
+        }))
     }
 
     fn tick(&mut self, bytes: &[u8], send: &mut dyn FnMut(&[u8]) -> bool) {

@@ -1,67 +1,21 @@
-//! The axis as what the tick computes.
+//! The axis as what the tick computes: it takes requests, steps, and leaves what thread mode wants to see of the step.
+
+mod look;
+mod request;
+
+pub use request::{Request, What};
 
 use core::marker::PhantomData;
 
-use leadscrew::axis::{self, Axis, Inputs};
-use leadscrew::encoder_map::EncoderMap;
-use leadscrew::hal::{Capture, Encoder};
-use leadscrew::protocol::refusal::Refusal;
-use leadscrew::protocol::service::Ticket;
+use leadscrew::axis::{Axis, Inputs};
+use leadscrew::hal::Encoder;
 use leadscrew::scope::{Scope, State, Stream};
 
 use crate::captures::CaptureSender;
-use crate::queues::{Outcome, TickEnds};
+use crate::queues::TickEnds;
 use crate::report::{Indexes, Report};
 use crate::store::Interlock;
 use crate::tick::Control;
-
-/// What thread mode asks for, and when.
-#[derive(Debug)]
-pub struct Request {
-    /// The tick that is to be the first to see it, counted from 0; one that has passed is the next.
-    pub at: u32,
-    /// Tells it from others, in its outcome.
-    pub ticket: Ticket,
-    /// What.
-    pub what: What,
-}
-
-impl Request {
-    /// One that the next tick is to see.
-    #[must_use]
-    pub const fn now(what: What) -> Self {
-        Self {
-            at: 0,
-            ticket: 0,
-            what,
-        }
-    }
-}
-
-/// What thread mode asks for.
-#[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a queue of them is a static, and there is no heap"
-)]
-pub enum What {
-    /// Puts the axis under control, or takes it out.
-    Enable(bool),
-    /// A request to the axis.
-    Axis(axis::Request),
-    /// Takes a map of the encoder, or does without.
-    SetMap(Option<EncoderMap<'static>>),
-    /// The parameter store cannot be trusted, or can again.
-    StoreCorrupt(bool),
-    /// Hands captures to thread mode, or does not any more.
-    Captures(bool),
-    /// Gives samples of signals, or does not any more.
-    Stream(Option<Stream>),
-    /// Triggers the scope.
-    TriggerScope,
-    /// Ends the scope, which comes back.
-    EndScope,
-}
 
 /// What the axis sees of its board.
 pub trait Inlet {
@@ -125,114 +79,6 @@ impl<B> AxisControl<B> {
             board: PhantomData,
         }
     }
-
-    /// Takes what is due; the queues bound how much that can be.
-    fn take_requests(&mut self) {
-        while let Some(config) = self.ends.configs.dequeue() {
-            let (ticket, config) = config;
-            let result = self.axis.reconfigure(config).map_err(Refusal::from);
-            self.answer(ticket, result);
-        }
-        if let Some(scope) = self.ends.scopes.dequeue() {
-            self.scope = Some(scope);
-        }
-        while let Some(next) = self.ends.requests.peek()
-            && next.at.wrapping_sub(self.tick).cast_signed() <= 0
-        {
-            let ticket = next.ticket;
-            // In place until it is done: a plan is large.
-            let result = match &next.what {
-                What::Axis(request) => self.axis.take(request).map_err(Refusal::from),
-                What::Enable(enable) => {
-                    self.enable = *enable;
-                    Ok(())
-                }
-                What::SetMap(map) => {
-                    self.axis.set_map(*map);
-                    Ok(())
-                }
-                What::StoreCorrupt(corrupt) => {
-                    self.axis.supervisor_mut().set_store_corrupt(*corrupt);
-                    Ok(())
-                }
-                What::Captures(is_open) => {
-                    self.captures.open(*is_open);
-                    Ok(())
-                }
-                What::Stream(stream) => {
-                    self.stream.clone_from(stream);
-                    Ok(())
-                }
-                What::TriggerScope => {
-                    if let Some(scope) = &mut self.scope {
-                        scope.trigger();
-                    }
-                    Ok(())
-                }
-                What::EndScope => {
-                    if let Some(scope) = &mut self.scope {
-                        scope.stop();
-                    }
-                    Ok(())
-                }
-            };
-            let _ = self.ends.requests.dequeue();
-            self.answer(ticket, result);
-        }
-    }
-
-    fn answer(&mut self, ticket: Ticket, result: Result<(), Refusal>) {
-        let outcome = Outcome { ticket, result };
-        if self.ends.outcomes.enqueue(outcome).is_err() {
-            self.ends.note_lost_outcome(result);
-        }
-    }
-
-    /// Everything that looks at the axis after its step.
-    fn look(&mut self, capture: &Capture<'_>) {
-        if let Some(scope) = &mut self.scope {
-            scope.take(&self.axis);
-            if scope.is_over()
-                && let Some(scope) = self.scope.take()
-                // There is one scope at a time, so there is room.
-                && let Err(scope) = self.ends.scopes_back.enqueue(scope)
-            {
-                self.scope = Some(scope);
-            }
-        }
-        if let Some(stream) = &mut self.stream
-            && let Some(sample) = stream.take(&self.axis)
-        {
-            // One that finds no room leaves a gap in the ticks.
-            let _ = self.ends.samples.enqueue(sample);
-        }
-        self.captures.send(capture);
-        if let Some(first) = self.axis.supervisor().first_fault() {
-            let told = (first.tick, first.later.bits());
-            if self.told_fault != Some(told) && self.ends.faults.enqueue(*first).is_ok() {
-                self.told_fault = Some(told);
-            }
-        }
-    }
-
-    fn note_index(&mut self, capture: &Capture<'_>) {
-        let Some(latch) = capture.index else {
-            return;
-        };
-        let step = latch.count.wrapping_sub(self.index_count).cast_signed();
-        let now = capture.count.wrapping_sub(latch.count).cast_signed();
-        let count = self.axis.outputs().count.wrapping_sub(i64::from(now));
-        self.indexes = Indexes {
-            number: self.indexes.number.wrapping_add(1),
-            count,
-            distance: if self.indexes.number == 0 {
-                0
-            } else {
-                i64::from(step)
-            },
-        };
-        self.index_count = latch.count;
-    }
 }
 
 impl<B: Inlet> Control for AxisControl<B> {
@@ -268,7 +114,7 @@ impl<B: Inlet> Control for AxisControl<B> {
         if let Some(scope) = &mut self.scope {
             scope.miss(1);
         }
-        Report::default()
+        Report::of_missed_tick()
     }
 }
 
@@ -276,9 +122,11 @@ impl<B: Inlet> Control for AxisControl<B> {
 mod tests {
     extern crate std;
 
+    use leadscrew::axis;
     use leadscrew::estimator::EstimatorConfig;
     use leadscrew::hal::Capture;
     use leadscrew::params::AxisParams;
+    use leadscrew::protocol::refusal::Refusal;
     use leadscrew::supervisor::SupervisorParams;
     use leadscrew::tuning::DriveModel;
     use std::boxed::Box;
