@@ -9,7 +9,9 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use leadscrew::estimator::EstimatorConfig;
 
-pub use self::axis::AxisCommand;
+pub use self::axis::{
+    AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
+};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
 use crate::axis::PortArgs;

@@ -83,7 +83,7 @@ impl Visitor for Fill<'_> {
 }
 
 /// What to say of a key that stands above the sections.
-fn stray_key(name: &str, known: &[&str], others: &[&str]) -> String {
+pub(crate) fn stray_key(name: &str, known: &[&str], others: &[&str]) -> String {
     if known.contains(&name) {
         format!("`{name}` is a section: write [{name}] and its keys below it")
     } else if let Some(near) = others.iter().find(|other| strsim::jaro(name, other) > 0.8) {

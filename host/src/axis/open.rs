@@ -49,16 +49,8 @@ pub fn open(args: &PortArgs, interrupted: &Arc<AtomicBool>) -> Result<Axis, Comm
 }
 
 fn line(args: &PortArgs) -> Result<Box<dyn Line>, CommandError> {
-    let Some(port) = &args.port else {
-        return Err(CommandError::Usage(
-            "which axis? Name its port: --port /dev/ttyACM0, tcp:HOST:PORT, qemu or sim".to_owned(),
-        ));
-    };
-    let machine = Base::ALL
-        .into_iter()
-        .find(|base| base.name() == args.machine)
-        .unwrap_or_default();
-    Ok(match port.parse()? {
+    let machine = machine(args);
+    Ok(match port(args)? {
         Port::Qemu => {
             let flash = flash(args)?;
             let qemu = QemuLine::start(|start| {
@@ -67,17 +59,53 @@ fn line(args: &PortArgs) -> Result<Box<dyn Line>, CommandError> {
             });
             Box::new(qemu.map_err(|error| CommandError::Data(error.to_string()))?)
         }
-        Port::Sim => {
-            let image = FlashImage::open(&flash(args)?)
-                .map_err(|error| CommandError::Data(error.to_string()))?;
-            Box::new(SimulatedAxis::new(machine, FACTORY_TICK_HZ, 1, image)?)
-        }
+        Port::Sim => Box::new(simulated(args)?),
         other => other.open(args.baud)?,
     })
 }
 
+/// The port that is named.
+///
+/// # Errors
+/// None is, or it is no port.
+pub fn port(args: &PortArgs) -> Result<Port, CommandError> {
+    let Some(port) = &args.port else {
+        return Err(CommandError::Usage(
+            "which axis? Name its port: --port /dev/ttyACM0, tcp:HOST:PORT, qemu or sim".to_owned(),
+        ));
+    };
+    Ok(port.parse()?)
+}
+
+/// The machine of a simulated axis.
+#[must_use]
+pub fn machine(args: &PortArgs) -> Base {
+    let found = Base::ALL
+        .into_iter()
+        .find(|base| base.name() == args.machine);
+    found.unwrap_or_default()
+}
+
+/// The axis in this process, switched on.
+///
+/// # Errors
+/// Its flash image cannot be used.
+pub fn simulated(args: &PortArgs) -> Result<SimulatedAxis, CommandError> {
+    let image = FlashImage::open(&flash(args)?);
+    let image = image.map_err(|error| CommandError::Data(error.to_string()))?;
+    Ok(SimulatedAxis::new(
+        machine(args),
+        FACTORY_TICK_HZ,
+        1,
+        image,
+    )?)
+}
+
 /// The flash image, in a folder that is there. A new one is told of.
-fn flash(args: &PortArgs) -> Result<PathBuf, CommandError> {
+///
+/// # Errors
+/// The folder cannot be made.
+pub fn flash(args: &PortArgs) -> Result<PathBuf, CommandError> {
     let path = args.flash.as_deref().unwrap_or(Path::new(DEFAULT_FLASH));
     if let Some(folder) = path.parent().filter(|_| args.flash.is_none()) {
         fs::create_dir_all(folder).map_err(CommandError::write(folder))?;

@@ -12,7 +12,7 @@ const TICKS_OF_EXCHANGE: u16 = 5;
 const TICK_HZ: f64 = 1000.0;
 
 /// The image that runs an axis on its link.
-const IMAGE: (&str, &str) = ("linked", "firmware");
+pub const IMAGE: (&str, &str) = ("linked", "firmware");
 
 /// An axis in QEMU; it ends with its line.
 pub struct QemuLine {

@@ -1,7 +1,18 @@
 //! Commands that work on an axis behind a port. Ctrl-C stops the axis first.
 
+mod confirm;
+pub mod counters;
+pub mod faults;
+pub mod identity;
 mod interrupt;
+pub mod motion;
+pub mod params;
+pub mod run;
+pub mod serve;
 pub mod status;
+
+use leadscrew::protocol::refusal::Refusal;
+use leadscrew_client::{Axis, Error};
 
 use crate::axis::{PortArgs, open};
 use crate::cli::AxisCommand;
@@ -13,8 +24,65 @@ use crate::error::CommandError;
 /// No axis, or what the command's job ends with.
 pub fn run(port: &PortArgs, command: &AxisCommand) -> Result<(), CommandError> {
     let interrupted = interrupt::flag()?;
+    // What is wrong with a script is told before any axis is switched on.
+    let script = match command {
+        AxisCommand::Run(args) => Some(crate::axis::script::Script::read(&args.script)?),
+        AxisCommand::Serve(args) => return serve::run(port, args, &interrupted),
+        AxisCommand::Move(args) => motion::check_move(args).map(|()| None)?,
+        AxisCommand::Override(args) => motion::percent(args).map(|_| None)?,
+        AxisCommand::Jog(args) => motion::time(args).map(|_| None)?,
+        AxisCommand::Params(command) => params::check(command).map(|()| None)?,
+        _ => None,
+    };
     let mut axis = open(port, &interrupted)?;
+    let done = match (command, &script) {
+        (AxisCommand::Run(args), Some(script)) => run::run(&mut axis, args, script),
+        _ => on(&mut axis, command),
+    };
+    done.map_err(|error| off_between_commands(error, port))
+}
+
+fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
     match command {
-        AxisCommand::Status(args) => status::run(&mut axis, args),
+        AxisCommand::Status(args) => status::run(axis, args),
+        AxisCommand::Identity(args) => identity::run(axis, args),
+        AxisCommand::Faults(args) => faults::run(axis, args),
+        AxisCommand::Clear(args) => faults::clear(axis, args),
+        AxisCommand::Enable(args) => motion::enable(axis, args),
+        AxisCommand::Disable(args) => motion::disable(axis, args),
+        AxisCommand::Home(args) => motion::home(axis, args),
+        AxisCommand::Move(args) => motion::go(axis, args),
+        AxisCommand::Jog(args) => motion::jog(axis, args),
+        AxisCommand::Hold(args) => motion::hold(axis, args),
+        AxisCommand::Resume(args) => motion::resume(axis, args),
+        AxisCommand::Stop(args) => motion::stop(axis, args),
+        AxisCommand::Override(args) => motion::set_override(axis, args),
+        AxisCommand::Counters(args) => counters::run(axis, args),
+        AxisCommand::Restart(args) => motion::restart(axis, args),
+        AxisCommand::Params(command) => params::run(axis, command),
+        // Those that need more than an axis.
+        AxisCommand::Run(_) | AxisCommand::Serve(_) => Ok(()),
+    }
+}
+
+/// Tells who moves an axis that each command switches on anew, and finds it off, how to keep it on.
+fn off_between_commands(error: CommandError, port: &PortArgs) -> CommandError {
+    let Some(port @ ("sim" | "qemu")) = port.port.as_deref() else {
+        return error;
+    };
+    match error {
+        CommandError::Axis(Error::Refused(mut refused))
+            if matches!(
+                refused.refusal(),
+                Some(Refusal::NotEnabled | Refusal::NotReady)
+            ) =>
+        {
+            refused.detail = format!(
+                "Every command with --port {port} switches its axis on anew: give orders in a script (`leadscrew run`), \
+                 or to one that goes on running (`leadscrew serve`)."
+            );
+            CommandError::Axis(Error::Refused(refused))
+        }
+        error => error,
     }
 }

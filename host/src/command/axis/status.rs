@@ -62,7 +62,9 @@ impl Report {
         }
     }
 
-    fn to_text(&self) -> String {
+    /// The report as text.
+    #[must_use]
+    pub fn to_text(&self) -> String {
         let mut text = format!("{}\n", self.state);
         if let Some(fault) = self.fault {
             let _ = writeln!(
