@@ -20,6 +20,7 @@ pub mod map_file;
 pub mod parallel;
 pub mod plot;
 mod progress;
+pub mod recorded;
 pub mod recording;
 pub mod report;
 pub mod sampler;

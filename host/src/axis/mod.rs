@@ -2,5 +2,7 @@
 
 mod open;
 mod qemu_line;
+pub mod scope;
+pub mod telemetry;
 
 pub use open::{PortArgs, open};
