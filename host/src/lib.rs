@@ -9,6 +9,7 @@ pub mod cli;
 pub mod closed_loop;
 pub mod command;
 pub mod commissioning;
+pub mod desk;
 pub mod error;
 pub mod fault_names;
 pub mod fault_page;
