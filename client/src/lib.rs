@@ -23,12 +23,14 @@ mod identity;
 mod line;
 mod options;
 mod port;
+mod recording;
+mod scale;
 mod status;
 
 pub use axis::{
     Axis, ExperimentPhase, ExperimentStatus, FaultPage, Kind, Learned, LearningPhase,
-    LearningStatus, Parameter, Records, Samples, ScopePhase, ScopeStatus, Stored, TickCounters,
-    Value,
+    LearningStatus, Live, Parameter, Records, Samples, ScopePhase, ScopeStatus, Stored,
+    TickCounters, Value,
 };
 pub use connection::{Connection, Sample};
 pub use error::{Error, Refused};
@@ -36,4 +38,6 @@ pub use identity::Identity;
 pub use line::{DEFAULT_BAUD, Line, SerialLine, TcpLine};
 pub use options::{Options, Timing};
 pub use port::Port;
+pub use recording::Recording;
+pub use scale::{Physical, Scale};
 pub use status::{LinkStatistics, Losses, Status};

@@ -2,14 +2,17 @@
 
 mod experiment;
 mod learning;
+mod live;
 mod motion;
 mod parameters;
+mod recorded;
 mod records;
 mod scope;
 mod store;
 
 pub use experiment::{ExperimentPhase, ExperimentStatus};
 pub use learning::{Learned, LearningPhase, LearningStatus};
+pub use live::Live;
 pub use parameters::{Parameter, Value};
 pub use records::{Records, Samples};
 pub use scope::{ScopePhase, ScopeStatus};

@@ -5,8 +5,10 @@ pub mod fault_report;
 pub mod jog;
 mod open;
 mod qemu_line;
+pub mod scope;
 pub mod script;
 pub mod serve;
+pub mod telemetry;
 pub mod values;
 
 pub use open::{PortArgs, flash, machine, open, port, simulated};
