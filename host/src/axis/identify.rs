@@ -204,9 +204,7 @@ pub(super) fn run_from_rest(
     let mut waited = Duration::ZERO;
     loop {
         match axis.run_experiment(program, record_ticks) {
-            Err(error)
-                if error.refusal() == Some(Refusal::NotAtRest) && waited < REST =>
-            {
+            Err(error) if error.refusal() == Some(Refusal::NotAtRest) && waited < REST => {
                 axis.wait(LOOK)?;
                 waited += LOOK;
             }

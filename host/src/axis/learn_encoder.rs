@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
-use leadscrew::calibration::{MAX_EDGES, MIN_EDGES, SPEED_RATIO};
 use leadscrew::calibration::MIN_REVOLUTIONS;
+use leadscrew::calibration::{MAX_EDGES, MIN_EDGES, SPEED_RATIO};
 use leadscrew::params::ControllerParams;
 use leadscrew::scope::Signal;
 use leadscrew::settings::Settings;
@@ -88,8 +88,8 @@ impl Feeds {
         let motion = &settings.axis.motion;
         let counts = motion.counts_per_revolution;
         let most = MOST_EDGES.min(MAX_EDGES);
-        let is_disc = (f64::from(MIN_EDGES)..=f64::from(most)).contains(&counts)
-            && counts % 4.0 == 0.0;
+        let is_disc =
+            (f64::from(MIN_EDGES)..=f64::from(most)).contains(&counts) && counts % 4.0 == 0.0;
         if !is_disc {
             return Err(ProcedureError::NoDisc { counts, most });
         }
@@ -102,7 +102,8 @@ impl Feeds {
         let (speed, ramp_s) = ramp(settings, fast);
         // Half the speed on average, at both ends.
         let lost_mm = speed * (ramp_s + STEADY_AFTER_S);
-        let needed = |revolutions: u32| lost_mm + f64::from(revolutions + MORE_REVOLUTIONS) * turn_mm;
+        let needed =
+            |revolutions: u32| lost_mm + f64::from(revolutions + MORE_REVOLUTIONS) * turn_mm;
         // Whole fours of them are used.
         let mut revolutions = wanted.max(MIN_REVOLUTIONS) / 4 * 4;
         while revolutions > MIN_REVOLUTIONS && needed(revolutions) > room.length_mm() {
@@ -360,11 +361,7 @@ fn begin_steady(
 }
 
 /// Rms by which the estimated velocity strays at the slower feed, after a way over the index, from which on a map is in use.
-fn ripple(
-    axis: &mut Axis,
-    settings: &Settings,
-    feeds: &Feeds,
-) -> Result<f64, ProcedureError> {
+fn ripple(axis: &mut Axis, settings: &Settings, feeds: &Feeds) -> Result<f64, ProcedureError> {
     let [_, slow] = feeds.feeds_mm_per_min;
     let turn_s = feeds.turn_mm / (slow / 60.0);
     let turns = 4.0;

@@ -66,7 +66,10 @@ fn slow(settings: &Settings) -> (f64, f64) {
     let motion = &settings.axis.motion;
     let turn = motion.counts_per_revolution / motion.counts_per_mm;
     let way = if turn > 0.0 { turn } else { WAY_MM };
-    (way, (60.0 * way / TIME_S).min(0.25 * motion.max_feed_mm_per_min))
+    (
+        way,
+        (60.0 * way / TIME_S).min(0.25 * motion.max_feed_mm_per_min),
+    )
 }
 
 /// Measures the offset and sets the constant output against it (not saved). The drive is off afterwards.

@@ -134,7 +134,10 @@ impl Answers {
                     _ => plain_number(value),
                 };
                 let number = number.ok_or_else(|| {
-                    Complaint::new(value.span(), format!("{} has to be a number", name.get_ref()))
+                    Complaint::new(
+                        value.span(),
+                        format!("{} has to be a number", name.get_ref()),
+                    )
                 })?;
                 answers
                     .give(name.get_ref(), number)

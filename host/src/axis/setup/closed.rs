@@ -6,8 +6,8 @@ use super::outcome::{TunedFigures, told};
 use super::{ProcedureError, Session};
 use crate::axis::tune::followed_now;
 use crate::axis::{
-    Feeds, TestMove, forget_learning, identify, keep_map, learn_encoder, null_offset, read_settings,
-    tune,
+    Feeds, TestMove, forget_learning, identify, keep_map, learn_encoder, null_offset,
+    read_settings, tune,
 };
 
 /// Longest test move, mm.

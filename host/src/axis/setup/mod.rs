@@ -198,7 +198,8 @@ impl Session<'_> {
         self.set(changes)?;
         self.save()?;
         if self.settings.axis.tick_hz != tick_hz {
-            self.guide.tell("the control rate changes: the axis restarts");
+            self.guide
+                .tell("the control rate changes: the axis restarts");
             self.axis.restart()?;
             self.settings = read_settings(self.axis)?;
         }

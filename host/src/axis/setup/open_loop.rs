@@ -144,8 +144,13 @@ impl Session<'_> {
             };
             let gone = (self.axis.experiment()?.count - from) as f64;
             let left = (way_d - gone).max(1.0) as u32;
-            let ticks = if level < MOST { 4.0 * tick_hz * way_mm.max(1.0) } else { LONGEST_S * tick_hz };
-            let crawl = Segment::level(level, ticks.min(0.5 * LONGEST_S * tick_hz) as u32).until(left);
+            let ticks = if level < MOST {
+                4.0 * tick_hz * way_mm.max(1.0)
+            } else {
+                LONGEST_S * tick_hz
+            };
+            let crawl =
+                Segment::level(level, ticks.min(0.5 * LONGEST_S * tick_hz) as u32).until(left);
             let rest = Segment::rest((0.3 * tick_hz) as u32);
             let program = Program::new(&[crawl, rest], bounds);
             self.guide
