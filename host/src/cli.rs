@@ -1,6 +1,7 @@
 //! The command line.
 
 mod axis;
+mod procedures;
 mod shared;
 
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
 use crate::axis::PortArgs;
@@ -45,7 +47,7 @@ pub enum Command {
     Sim(SimArgs),
     /// Decodes a logic-analyser capture of an encoder and runs the estimators on it
     Replay(ReplayArgs),
-    /// Learns from captures of steady feeds where the edges of an encoder really lie
+    /// Learns where the edges of an encoder really lie: from captures of steady feeds, or with --port on the axis itself
     CalibrateEncoder(CalibrateEncoderArgs),
     /// Writes a capture of the simulated encoder on steady feeds, to try the others on
     SimEncoder(SimEncoderArgs),
@@ -53,9 +55,10 @@ pub enum Command {
     TuneFilter(TuneFilterArgs),
     /// Measures the estimators on the scenes of reference: the tables of accuracy
     Accuracy(AccuracyArgs),
-    /// Finds out by small experiments what a simulated machine's drive does, beginning with its sign
+    /// Finds out by small experiments what a drive does, beginning with its sign: on the axis at --port, else on a simulated
+    /// machine
     Identify(IdentifyArgs),
-    /// Identifies a simulated machine's drive and offers the parameters of a loop for it
+    /// Identifies a drive and offers the parameters of a loop for it: on the axis at --port, else on a simulated machine
     Autotune(AutotuneArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
@@ -70,6 +73,9 @@ pub struct IdentifyArgs {
     /// The machine, and within what it may be moved
     #[command(flatten)]
     pub bench: BenchArgs,
+    /// On an axis: what needs no question
+    #[command(flatten)]
+    pub yes: YesArgs,
     /// Print the report as JSON, alone, on standard output
     #[arg(long)]
     pub json: bool,
@@ -84,6 +90,12 @@ pub struct AutotuneArgs {
     /// The machine, and within what it may be moved
     #[command(flatten)]
     pub bench: BenchArgs,
+    /// On an axis: what needs no question
+    #[command(flatten)]
+    pub yes: YesArgs,
+    /// On an axis: where it may go
+    #[command(flatten)]
+    pub room: RoomArgs,
     /// Largest feed of the axis, mm/min, at most 95 % of what is identified at full command; without it 9000, or what
     /// the drive gives if that is less
     #[arg(long, value_name = "MM_PER_MIN", allow_negative_numbers = true)]
@@ -214,15 +226,26 @@ pub enum MapForm {
 #[derive(Debug, Args)]
 pub struct CalibrateEncoderArgs {
     /// Captures, each VCD, sigrok CSV or Saleae Logic 2 CSV: of steady feeds both ways at two speeds, 17 revolutions
-    /// each or more
-    #[arg(required = true)]
+    /// each or more; none with --port
     pub files: Vec<PathBuf>,
-    /// Edges of a revolution: 4 times the lines (512 to 65536)
+    /// Edges of a revolution: 4 times the lines (512 to 65536); an axis knows them
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub edges_per_rev: u32,
-    /// Where the map goes
+    pub edges_per_rev: Option<u32>,
+    /// Where the map goes; that of an axis is kept by it
     #[arg(long, value_name = "MAP")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
+    /// On an axis: what needs no question
+    #[command(flatten)]
+    pub yes: YesArgs,
+    /// On an axis: where it may go
+    #[command(flatten)]
+    pub room: RoomArgs,
+    /// On an axis: revolutions that a run averages over, 12 or more; fewer are taken where there is no room
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(12..=1000))]
+    pub revolutions: u32,
+    /// On an axis: the two feeds, mm/min, a fifth apart or more [default: 500 and 400 rpm of the encoder]
+    #[arg(long, value_name = "FAST,SLOW", value_delimiter = ',', num_args = 2)]
+    pub feeds: Option<Vec<f64>>,
     /// How much the map is to know
     #[arg(long, value_name = "FORM", value_enum, default_value = "full")]
     pub form: MapForm,

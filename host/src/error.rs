@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::axis::ProcedureError;
 use crate::plot::PlotError;
 
 /// Why a command could not do its job.
@@ -47,6 +48,16 @@ pub enum CommandError {
     /// Something is wrong with the data.
     #[error("{0}")]
     Data(String),
+}
+
+impl From<ProcedureError> for CommandError {
+    fn from(error: ProcedureError) -> Self {
+        match error {
+            ProcedureError::Axis(error) => Self::Axis(error),
+            ProcedureError::Answer(text) => Self::Usage(text),
+            error => Self::Data(error.to_string()),
+        }
+    }
 }
 
 impl CommandError {

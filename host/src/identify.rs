@@ -126,7 +126,7 @@ impl Bench {
             if let Some(identified) = tended.map_err(IdentifyError::Refused)? {
                 return Ok(Found {
                     identified,
-                    samples: self.samples(&identification),
+                    samples: samples(&identification, self.tick_hz),
                     duration_s: f64::from(tick) / self.tick_hz,
                     furthest_mm: scale.mm_from_counts(furthest_d),
                 });
@@ -134,17 +134,18 @@ impl Bench {
         }
         Err(IdentifyError::Endless)
     }
+}
 
-    fn samples(&self, identification: &Identification<'_>) -> Vec<Sample> {
-        let record_s = f64::from(identification.ticks_of_record()) / self.tick_hz;
-        let mut samples = Vec::new();
-        identification.trace(|index, measured, modelled, error_d| {
-            samples.push(Sample {
-                time_s: index as f64 * record_s,
-                velocity: (measured, modelled),
-                error_d,
-            });
+/// The records of the main experiments at a control rate of `tick_hz`.
+pub(crate) fn samples(identification: &Identification<'_>, tick_hz: f64) -> Vec<Sample> {
+    let record_s = f64::from(identification.ticks_of_record()) / tick_hz;
+    let mut samples = Vec::new();
+    identification.trace(|index, measured, modelled, error_d| {
+        samples.push(Sample {
+            time_s: index as f64 * record_s,
+            velocity: (measured, modelled),
+            error_d,
         });
-        samples
-    }
+    });
+    samples
 }

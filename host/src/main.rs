@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
+use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
     accuracy, autotune, axis, calibrate_encoder, demo, identify, replay, sim, sim_encoder,
     tracking, tune_filter,
@@ -12,7 +13,14 @@ use leadscrew_host::command::{
 
 fn main() -> ExitCode {
     let Cli { port, command } = Cli::parse();
+    let on_axis = |command| axis::run_on_axis(&port, command);
+    let is_on_axis = port.port.is_some();
     let done = match command {
+        Some(Command::CalibrateEncoder(args)) if is_on_axis => {
+            on_axis(OnAxis::CalibrateEncoder(&args))
+        }
+        Some(Command::Identify(args)) if is_on_axis => on_axis(OnAxis::Identify(&args)),
+        Some(Command::Autotune(args)) if is_on_axis => on_axis(OnAxis::Autotune(&args)),
         None => demo::run(),
         Some(Command::Sim(args)) => sim::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),

@@ -36,6 +36,8 @@ pub struct Identification<'w> {
     pub(super) recorder: Recorder<'w>,
     pub(super) stage: Option<Stage>,
     running: bool,
+    /// Records of the experiment that runs go on behind those before.
+    goes_on: bool,
     /// A program that waits for rest, and for how many ticks it has.
     waiting: Option<(Program, u32)>,
     /// Count at which all of it began.
@@ -74,6 +76,7 @@ impl<'w> Identification<'w> {
             recorder: Recorder::new(memory),
             stage: None,
             running: false,
+            goes_on: false,
             waiting: None,
             centre: 0,
             level: 0.0,
@@ -90,6 +93,12 @@ impl<'w> Identification<'w> {
     #[must_use]
     pub const fn stage(&self) -> Option<Stage> {
         self.stage
+    }
+
+    /// Command of the proof of the sign, of full command: the last one tried.
+    #[must_use]
+    pub const fn level(&self) -> f64 {
+        self.level
     }
 
     /// Takes what a tick of the experiment saw, right after that tick.
@@ -129,8 +138,29 @@ impl<'w> Identification<'w> {
         }
     }
 
+    /// Ticks of a record of the experiment that [`Self::next`] gave, for an axis elsewhere; 0: its records go on behind
+    /// those before, as these are.
+    #[must_use]
+    pub const fn record_ticks(&self) -> u32 {
+        if self.goes_on {
+            0
+        } else {
+            self.recorder.decimation()
+        }
+    }
+
+    /// Takes all records that an axis elsewhere has, of the experiments since [`Self::record_ticks`] was not 0, in place of
+    /// [`Self::feed`].
+    pub fn load(&mut self, words: &[i32]) {
+        self.recorder.load(words, self.recorder.decimation());
+        self.running = false;
+    }
+
     /// What a fault that cut the proof of the sign short says of it.
-    fn judge(&self, fault: Fault) -> Result<(), Refusal> {
+    ///
+    /// # Errors
+    /// [`Refusal`] where it says something.
+    pub fn judge(&self, fault: Fault) -> Result<(), Refusal> {
         let [moved_d, _] = pulses(self.recorder.records());
         let level = self.level;
         match (self.stage, fault) {
@@ -186,6 +216,7 @@ impl<'w> Identification<'w> {
             Some(decimation) => self.recorder.clear(decimation),
             None => self.recorder.pause(),
         }
+        self.goes_on = decimation.is_none();
         self.stage = Some(stage);
         self.running = true;
         let aligned = program.aligned(self.recorder.decimation());

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::JsonArgs;
+use super::{JsonArgs, NullOffsetArgs, SetupArgs};
 
 /// What works on an axis.
 #[derive(Debug, Subcommand)]
@@ -46,6 +46,10 @@ pub enum AxisCommand {
     Run(RunArgs),
     /// Keeps the axis of --port qemu or sim running, for other commands to reach it by --port tcp:…
     Serve(ServeArgs),
+    /// Commissions the axis from factory settings, step by step: polarity, direction, index, drive, loop, encoder, offset
+    Setup(SetupArgs),
+    /// Measures the offset of the drive and sets the loop against it
+    NullOffset(NullOffsetArgs),
 }
 
 /// Arguments of `move`.

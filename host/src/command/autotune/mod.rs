@@ -3,6 +3,7 @@
 //! Nothing is written unless a file is named. What is offered was designed and tried on the identified model alone; the
 //! machine itself then shows how well it follows, before and after, with its encoder corrected by a learned map.
 
+pub(super) mod margins;
 mod report;
 
 use std::path::Path;

@@ -2,10 +2,9 @@
 
 use leadscrew::parameter_table::ParameterTable;
 use leadscrew::params::{AxisParams, SectionVisitor};
-use leadscrew::tuning::autotune::{LEAST_GAIN_DB, LEAST_PHASE_DEG, SPREAD};
-use leadscrew::tuning::margins::Margins;
 use serde::Serialize;
 
+use super::margins::{MarginFigures, number};
 use super::{MOVE_MM, Tuned};
 use crate::cli::AutotuneArgs;
 use crate::command::identify;
@@ -41,31 +40,6 @@ struct Changed {
     after: f64,
 }
 
-#[derive(Serialize)]
-struct MarginFigures {
-    nominal: MarginPair,
-    worst: MarginPair,
-}
-
-/// Margins, the gain's to either side; null where there is no limit.
-#[derive(Serialize)]
-struct MarginPair {
-    gain_db: Option<f64>,
-    reserve_db: Option<f64>,
-    phase_deg: f64,
-}
-
-impl From<&Margins> for MarginPair {
-    fn from(margins: &Margins) -> Self {
-        let finite = |db: f64| db.is_finite().then_some(db);
-        Self {
-            gain_db: finite(margins.gain_db),
-            reserve_db: finite(margins.reserve_db),
-            phase_deg: margins.phase_deg,
-        }
-    }
-}
-
 /// How the machine follows; null where it does not come to its goal.
 #[derive(Serialize)]
 struct Follows {
@@ -97,10 +71,7 @@ impl Report {
             max_feed_mm_per_min: tuned.max_feed_mm_per_min,
             bandwidth_rad_per_s: offer.bandwidth_rad_per_s,
             parameters: changed(tuned.before, tuned.file.axis),
-            margins: MarginFigures {
-                nominal: (&offer.nominal).into(),
-                worst: (&offer.worst).into(),
-            },
+            margins: offer.into(),
             predicted_peak_d: offer.trial.peak_d,
             predicted_worst_peak_d: offer.corner_trial.peak_d,
             before: before.into(),
@@ -118,7 +89,7 @@ impl Report {
             "{}\n{}\n\n{}\n\n{}\n{written}\n",
             self.identification.to_text(),
             self.parameter_table(),
-            self.margin_table(),
+            self.margins.table(),
             self.follow_table(),
         )
     }
@@ -133,30 +104,6 @@ impl Report {
                 changed.unit.to_owned(),
             ]);
         }
-        table.trim_fmt()
-    }
-
-    fn margin_table(&self) -> String {
-        let mut table = text_table(&["margins", "gain up, dB", "gain down, dB", "phase, °"]);
-        let worst = format!("worst within ±{:.0} % of gain and period", 100.0 * SPREAD);
-        let least = format!("{LEAST_GAIN_DB:.0}");
-        for (name, pair) in [
-            ("model".to_owned(), &self.margins.nominal),
-            (worst, &self.margins.worst),
-        ] {
-            table.add_row([
-                name,
-                figure_or_dash(pair.gain_db, 1),
-                figure_or_dash(pair.reserve_db, 1),
-                format!("{:.0}", pair.phase_deg),
-            ]);
-        }
-        table.add_row([
-            "asked for".to_owned(),
-            least.clone(),
-            least,
-            format!("{LEAST_PHASE_DEG:.0}"),
-        ]);
         table.trim_fmt()
     }
 
@@ -221,18 +168,4 @@ fn changed(mut before: AxisParams, mut after: AxisParams) -> Vec<Changed> {
             after,
         })
         .collect()
-}
-
-/// A value with some five digits.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if size >= 100.0 {
-        format!("{value:.1}")
-    } else if size >= 1.0 {
-        format!("{value:.3}")
-    } else {
-        format!("{value:.6}")
-    }
 }

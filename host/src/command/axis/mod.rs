@@ -1,21 +1,28 @@
 //! Commands that work on an axis behind a port. Ctrl-C stops the axis first.
 
+mod autotune;
+mod calibrate_encoder;
+mod changes;
 mod confirm;
 pub mod counters;
 pub mod faults;
+mod identify;
 pub mod identity;
 mod interrupt;
 pub mod motion;
+mod null_offset;
 pub mod params;
+mod person;
 pub mod run;
 pub mod serve;
+mod setup;
 pub mod status;
 
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew_client::{Axis, Error};
 
 use crate::axis::{PortArgs, open};
-use crate::cli::AxisCommand;
+use crate::cli::{AutotuneArgs, AxisCommand, CalibrateEncoderArgs, IdentifyArgs};
 use crate::error::CommandError;
 
 /// Runs a command on the axis.
@@ -60,6 +67,8 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Counters(args) => counters::run(axis, args),
         AxisCommand::Restart(args) => motion::restart(axis, args),
         AxisCommand::Params(command) => params::run(axis, command),
+        AxisCommand::Setup(args) => setup::run(axis, args),
+        AxisCommand::NullOffset(args) => null_offset::run(axis, args),
         // Those that need more than an axis.
         AxisCommand::Run(_) | AxisCommand::Serve(_) => Ok(()),
     }
@@ -84,5 +93,31 @@ fn off_between_commands(error: CommandError, port: &PortArgs) -> CommandError {
             CommandError::Axis(Error::Refused(refused))
         }
         error => error,
+    }
+}
+
+/// A command that works without an axis as well.
+#[derive(Clone, Copy, Debug)]
+pub enum OnAxis<'a> {
+    /// `identify`.
+    Identify(&'a IdentifyArgs),
+    /// `autotune`.
+    Autotune(&'a AutotuneArgs),
+    /// `calibrate-encoder`.
+    CalibrateEncoder(&'a CalibrateEncoderArgs),
+}
+
+/// Runs such a command on the axis.
+///
+/// # Errors
+/// As of [`run`].
+pub fn run_on_axis(port: &PortArgs, command: OnAxis<'_>) -> Result<(), CommandError> {
+    let interrupted = interrupt::flag()?;
+    let mut axis = open(port, &interrupted)?;
+    let name = port.port.as_deref().unwrap_or_default();
+    match command {
+        OnAxis::Identify(args) => identify::run(&mut axis, name, args),
+        OnAxis::Autotune(args) => autotune::run(&mut axis, name, args),
+        OnAxis::CalibrateEncoder(args) => calibrate_encoder::run(&mut axis, args),
     }
 }

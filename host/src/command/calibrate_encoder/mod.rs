@@ -25,6 +25,11 @@ const LARGEST_TOLERANCE_D: f64 = 1.0;
 /// # Errors
 /// Bad usage, captures that cannot be read or do not suffice, or a file that cannot be written.
 pub fn run(args: &CalibrateEncoderArgs) -> Result<(), CommandError> {
+    if args.files.is_empty() {
+        return Err(CommandError::Usage(
+            "learn from what? Name captures of steady feeds, or the axis with --port".to_owned(),
+        ));
+    }
     let options = options(args)?;
     check_outputs(args)?;
     let recordings = read(args)?;
@@ -35,7 +40,7 @@ pub fn run(args: &CalibrateEncoderArgs) -> Result<(), CommandError> {
     if let Some(path) = &args.plot {
         draw(&calibration, path)?;
     }
-    write_file(&args.out, |file| file.write_all(&calibration.image))?;
+    write_file(out(args)?, |file| file.write_all(&calibration.image))?;
     let report = Report::new(&calibration, args);
     if args.json {
         print_json(&report)
@@ -54,9 +59,22 @@ impl From<MapForm> for Form {
     }
 }
 
+fn edges_per_rev(args: &CalibrateEncoderArgs) -> Result<u32, CommandError> {
+    let missing = "captures do not tell the edges of a revolution: state them with --edges-per-rev";
+    args.edges_per_rev
+        .ok_or_else(|| CommandError::Usage(missing.to_owned()))
+}
+
+fn out(args: &CalibrateEncoderArgs) -> Result<&PathBuf, CommandError> {
+    let missing = "where is the map to go? Name a file with --out";
+    args.out
+        .as_ref()
+        .ok_or_else(|| CommandError::Usage(missing.to_owned()))
+}
+
 fn options(args: &CalibrateEncoderArgs) -> Result<Options, CommandError> {
     let tick_hz = tick_rate(args.tick_hz)?;
-    let edges = args.edges_per_rev;
+    let edges = edges_per_rev(args)?;
     if !(MIN_EDGES..=MAX_EDGES).contains(&edges) || !edges.is_multiple_of(4) {
         return Err(CommandError::Usage(format!(
             "--edges-per-rev {edges}: expected 4 times the lines, a multiple of 4 from {MIN_EDGES} to {MAX_EDGES}"
@@ -95,7 +113,7 @@ fn options(args: &CalibrateEncoderArgs) -> Result<Options, CommandError> {
 }
 
 fn check_outputs(args: &CalibrateEncoderArgs) -> Result<(), CommandError> {
-    let mut outputs = vec![("--out", args.out.clone())];
+    let mut outputs = vec![("--out", out(args)?.clone())];
     if let Some(path) = &args.plot {
         if !is_picture(path) {
             return Err(PlotError::Extension { path: path.clone() }.into());

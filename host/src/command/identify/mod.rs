@@ -38,7 +38,7 @@ pub fn run(args: &IdentifyArgs) -> Result<(), CommandError> {
     let found = identify(&args.bench, &bench, map_of(image.as_deref()))?;
     if let Some(path) = &args.plot {
         let _drawing = Progress::endless("drawing");
-        figure(&args.bench.simulated.machine, &found).save(path)?;
+        figure(&args.bench.simulated.machine, &found.samples).save(path)?;
     }
     let report = Report::new(&args.bench, &bench, &found);
     if args.json {
@@ -82,10 +82,10 @@ pub(super) fn identify(
 }
 
 /// Measured and modelled velocity, and what is left of position.
-fn figure(machine: &str, found: &Found) -> Figure {
+pub(super) fn figure(machine: &str, samples: &[Sample]) -> Figure {
     let curve = |value: fn(&Sample) -> f64| {
-        let samples = found.samples.iter();
         samples
+            .iter()
             .map(|sample| (sample.time_s, value(sample)))
             .collect()
     };

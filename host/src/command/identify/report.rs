@@ -5,6 +5,7 @@ use leadscrew::units::AxisScale;
 use leadscrew_hal_mock::drive::DriveParams;
 use serde::Serialize;
 
+use crate::axis::IdentifiedAxis;
 use crate::cli::BenchArgs;
 use crate::identify::{Bench, Found};
 use crate::report::text_table;
@@ -16,7 +17,8 @@ pub(in crate::command) struct Report {
     machine: String,
     tick_hz: f64,
     window_mm: f64,
-    seed: u64,
+    /// Null for an axis.
+    seed: Option<u64>,
     polarity: &'static str,
     proof_level: f64,
     duration_s: f64,
@@ -36,8 +38,8 @@ struct Row {
     sigma: Option<f64>,
     /// The figure is the least that it can be.
     at_least: bool,
-    /// What the simulated machine has.
-    truth: f64,
+    /// What the simulated machine has; null for an axis.
+    truth: Option<f64>,
 }
 
 impl Row {
@@ -64,21 +66,22 @@ impl Row {
             value: figure.map(|figure| figure.value * factor),
             sigma: figure.map(|figure| figure.sigma * factor),
             at_least: false,
-            truth,
+            truth: Some(truth),
         }
     }
 
-    fn cells(&self) -> [String; 5] {
+    fn cells(&self) -> Vec<String> {
         let dash = || "-".to_owned();
         let bound = if self.at_least { "≥ " } else { "" };
-        [
+        let truth = self.truth.map(|truth| format!("{truth:.4}"));
+        let found = [
             self.name.to_owned(),
             self.value
                 .map_or_else(dash, |value| format!("{bound}{}", decimal(value))),
             self.sigma.map_or_else(dash, |sigma| format!("{sigma:.4}")),
-            format!("{:.4}", self.truth),
-            self.unit.to_owned(),
-        ]
+        ];
+        let unit = self.unit.to_owned();
+        found.into_iter().chain(truth).chain([unit]).collect()
     }
 }
 
@@ -90,7 +93,7 @@ impl Report {
             machine: args.simulated.machine.clone(),
             tick_hz: bench.tick_hz,
             window_mm: bench.params.window_mm,
-            seed: bench.seed,
+            seed: Some(bench.seed),
             polarity: "right",
             proof_level: found.identified.proof_level,
             duration_s: found.duration_s,
@@ -100,14 +103,41 @@ impl Report {
         }
     }
 
+    /// The report of what was `found` on the axis at `port`.
+    pub fn of_axis(port: &str, tick_hz: f64, window_mm: f64, found: &IdentifiedAxis) -> Self {
+        // What a machine has is known of simulated ones.
+        let figures = rows(&found.identified, &DriveParams::default());
+        let untold = |row| Row { truth: None, ..row };
+        Self {
+            schema: "leadscrew/identify/1",
+            machine: port.to_owned(),
+            tick_hz,
+            window_mm,
+            seed: None,
+            polarity: "right",
+            proof_level: found.identified.proof_level,
+            duration_s: found.duration_s,
+            furthest_mm: found.furthest_mm,
+            residual_d: found.identified.residual_d,
+            figures: figures.into_iter().map(untold).collect(),
+        }
+    }
+
     /// The report for people.
     pub fn to_text(&self) -> String {
-        let mut table = text_table(&["figure", "identified", "1σ", "machine", "unit"]);
+        let (columns, seed) = match self.seed {
+            Some(seed) => (
+                &["figure", "identified", "1σ", "machine", "unit"][..],
+                format!(", seed {seed}"),
+            ),
+            None => (&["figure", "identified", "1σ", "unit"][..], String::new()),
+        };
+        let mut table = text_table(columns);
         for row in &self.figures {
             table.add_row(row.cells());
         }
         format!(
-            "{}: {:.1} s of experiments at {} Hz within {:.1} mm of the start (window {} mm), seed {}\n\
+            "{}: {:.1} s of experiments at {} Hz within {:.1} mm of the start (window {} mm){}\n\
              polarity: right, proved at {:.1} % of full command\n\
              measured less modelled position: {:.2} d rms\n\
              {}\n",
@@ -116,7 +146,7 @@ impl Report {
             self.tick_hz,
             self.furthest_mm,
             self.window_mm,
-            self.seed,
+            seed,
             100.0 * self.proof_level,
             self.residual_d,
             table.trim_fmt(),

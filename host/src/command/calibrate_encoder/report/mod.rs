@@ -2,6 +2,8 @@
 
 mod text;
 
+use std::path::Path;
+
 use leadscrew::calibration::{Bands, NOT_SEPARATED, RunSummary};
 use serde::Serialize;
 
@@ -153,9 +155,14 @@ impl Report {
         let residual = &calibration.residual;
         Self {
             schema: "leadscrew/calibrate-encoder/1",
-            map: args.out.display().to_string(),
+            map: args
+                .out
+                .as_deref()
+                .unwrap_or(Path::new(""))
+                .display()
+                .to_string(),
             map_bytes: calibration.image.len(),
-            edges_per_rev: args.edges_per_rev,
+            edges_per_rev: args.edges_per_rev.unwrap_or_default(),
             form: match args.form {
                 crate::cli::MapForm::Full => "full",
                 crate::cli::MapForm::Coarse => "coarse",
@@ -208,7 +215,7 @@ impl Run {
                 "forward"
             },
             speed: summary.speed_d_s / args.tick_hz,
-            rpm: 60.0 * summary.speed_d_s / f64::from(args.edges_per_rev),
+            rpm: 60.0 * summary.speed_d_s / f64::from(args.edges_per_rev.unwrap_or(1)),
             revolutions: summary.revolutions,
             pass_noise: summary.pass_sigma_d,
             errors: summary.errors.into(),

@@ -1,0 +1,4 @@
+//! The guided procedures, on the firmware in this process.
+
+mod setup;
+mod support;
