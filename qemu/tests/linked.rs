@@ -1,148 +1,19 @@
 //! The axis firmware on its link.
 
+mod support;
+
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
 use leadscrew::protocol::client::{Answer, Client};
-use leadscrew::protocol::reply::{ENABLED, HOMED, PLANNED, Reply};
+use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
-use leadscrew_qemu::{Carrier, Endpoint, Error, Guest, Lockstep, Start, build};
+use leadscrew_qemu::{Carrier, Endpoint};
+use support::{PATIENCE, STEP, Tool, end, linked, start};
 
-/// A safety net, for a machine that is busy with something else.
-const PATIENCE: Duration = Duration::from_secs(120);
 /// For the rest of an answer that has begun.
 const REST: Duration = Duration::from_millis(500);
-/// Ticks between two barriers.
-const STEP: u16 = 10;
-
-fn linked() -> Start {
-    Start::new(build("linked", "firmware").unwrap())
-}
-
-/// A tool on a line in lockstep.
-struct Tool {
-    line: Lockstep,
-    client: Client,
-    /// Ticks that have run.
-    tick: u32,
-    /// The last tick that the axis told of.
-    seen: u32,
-    records: u32,
-    /// Everything that came.
-    bytes: Vec<u8>,
-    flags: u16,
-    position_nm: i64,
-    /// The parameter that was told last.
-    value: f64,
-}
-
-impl Tool {
-    fn on(line: Lockstep) -> Self {
-        Self {
-            line,
-            client: Client::new(),
-            tick: 0,
-            seen: 0,
-            records: 0,
-            bytes: Vec::new(),
-            flags: 0,
-            position_nm: 0,
-            value: f64::NAN,
-        }
-    }
-
-    /// Asks, and lets the axis run to the next barrier.
-    fn ask(&mut self, request: &Request<'_>) {
-        let frame = self.client.request(request).unwrap().to_vec();
-        let (tick, bytes) = self.line.exchange(STEP, &frame).unwrap();
-        self.tick = tick;
-        let Self {
-            client,
-            seen,
-            records,
-            flags,
-            position_nm,
-            value,
-            ..
-        } = self;
-        client.receive(&bytes, |answer| match answer {
-            Answer::Record(_) => *records += 1,
-            Answer::Reply(_, Reply::Refused { reason, .. }) => {
-                panic!("refused {request:?}: {reason}")
-            }
-            Answer::Reply(_, Reply::Parameter { value: told, .. }) => *value = told,
-            Answer::Reply(_, Reply::Ack { tick }) => *seen = tick,
-            Answer::Reply(
-                _,
-                Reply::Status {
-                    tick,
-                    flags: now,
-                    position_nm: at,
-                    ..
-                },
-            ) => {
-                (*seen, *flags, *position_nm) = (tick, now, at);
-            }
-            _ => {}
-        });
-        self.bytes.extend(bytes);
-    }
-
-    /// Asks for the status and renews the lease in turn, until it is so.
-    fn until(&mut self, most_ticks: u32, is_so: impl Fn(&Self) -> bool) {
-        let last = self.tick + most_ticks;
-        while !is_so(self) {
-            assert!(
-                self.tick < last,
-                "at {} nm, flags {:b}",
-                self.position_nm,
-                self.flags
-            );
-            self.ask(&Request::RenewLease { seen: self.seen });
-            self.ask(&Request::Status {});
-        }
-    }
-
-    fn hello(&mut self, nonce: u32) {
-        self.ask(&Request::Hello { protocol: 1, nonce });
-    }
-
-    /// From hello to an axis that is homed, every tick recorded.
-    fn home(&mut self) {
-        self.hello(7);
-        self.ask(&Request::TakeLease {});
-        self.ask(&Request::Subscribe { every: 1 });
-        self.ask(&Request::Enable {});
-        self.until(3_000, |tool| tool.flags & ENABLED != 0);
-        self.ask(&Request::Home {});
-        // It still comes to rest when it is.
-        self.until(60_000, |tool| {
-            tool.flags & (HOMED | PLANNED) == HOMED | PLANNED
-        });
-    }
-}
-
-fn start(guest: &Start) -> (Guest, Tool) {
-    let mut guest = guest.clone().lockstep().start().unwrap();
-    let line = guest.take_lockstep().unwrap();
-    (guest, Tool::on(line))
-}
-
-/// Ends it, which it does well if no tick was late, overlong or unreported; the last of what it logged.
-fn end(guest: &Guest, tool: &mut Tool) -> String {
-    let ended = tool.line.exchange(0, &[]);
-    assert!(matches!(ended, Err(Error::Ended { .. })), "{ended:?}");
-    let log: Vec<_> = guest
-        .log()
-        .unwrap()
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    let log = log.join("\n");
-    assert_eq!(guest.wait(PATIENCE).unwrap(), 0, "{log}");
-    log
-}
 
 #[test]
 #[ignore = "needs QEMU; run by cargo xtask test"]
@@ -155,17 +26,19 @@ fn ten_thousand_ticks_with_a_busy_link_are_all_in_time() {
         target_nm: there,
         feed_um_per_min: 9_000_000,
     });
-    tool.until(6_000, |tool| (tool.position_nm - there).abs() < 10_000);
+    tool.until(6_000, |tool| {
+        (tool.heard.position_nm - there).abs() < 10_000
+    });
     tool.until(20_000, |tool| tool.tick > 10_000);
     let log = end(&guest, &mut tool);
     assert!(log.contains("late 0 overlong 0 lost records 0"), "{log}");
     // All but those before they were asked for.
     assert!(
-        tool.records + 3 * u32::from(STEP) >= tool.tick,
+        tool.heard.records + 3 * u32::from(STEP) >= tool.tick,
         "{}",
-        tool.records
+        tool.heard.records
     );
-    assert_eq!(tool.client.records_lost(), 0);
+    assert_eq!(tool.lost().0, 0);
 }
 
 #[test]
@@ -179,7 +52,7 @@ fn what_the_axis_says_to_the_same_words_is_the_same() {
         tool.ask(&Request::Enable {});
         tool.until(3_000, |tool| tool.tick > 500);
         let log = end(&guest, &mut tool);
-        (tool.bytes, log)
+        (tool.heard.bytes, log)
     };
     let first = said();
     assert!(first.0.len() > 10_000);
@@ -205,16 +78,16 @@ fn what_was_saved_is_there_after_a_restart_and_after_a_power_cut() {
     assert!(tool.tick > 0, "it is acknowledged before");
     let (tick, said) = tool.line.exchange(STEP, &[]).unwrap();
     assert_eq!((tick, said), (0, vec![]));
-    tool.client = Client::new();
+    tool.begin_anew();
     tool.hello(2);
     tool.ask(&parameter);
-    assert_eq!(tool.value, 4321.0);
+    assert_eq!(tool.heard.value, Some(4321.0));
     powered.kill().unwrap();
 
     let (powered, mut tool) = start(&guest);
     tool.hello(1);
     tool.ask(&parameter);
-    assert_eq!(tool.value, 4321.0);
+    assert_eq!(tool.heard.value, Some(4321.0));
     end(&powered, &mut tool);
 }
 
@@ -269,4 +142,35 @@ fn link_and_modbus_are_answered_on_their_uarts() {
         Some(&[1, 4, 4, 0, 0, 0x03, 0xe8][..]),
         "{answer:x?}"
     );
+}
+
+/// Ticks from the barrier that brings a request to the one that takes its answer away.
+fn ticks_to_answer(tool: &mut Tool, request: &Request<'_>) -> u32 {
+    let asked = tool.tick;
+    let answers = tool.heard.answers;
+    tool.step(1, Some(request));
+    while tool.heard.answers == answers {
+        tool.step(1, None);
+    }
+    tool.tick - asked
+}
+
+#[test]
+#[ignore = "needs QEMU; run by cargo xtask test"]
+fn what_only_asks_is_answered_within_a_tick_and_an_order_by_the_tick_that_takes_it() {
+    let (guest, mut tool) = start(&linked());
+    tool.home();
+    let mut ticks = |request| ticks_to_answer(&mut tool, &request);
+    let status = ticks(Request::Status {});
+    let refused = ticks(Request::LearnRun { revolutions: 12 });
+    let order = ticks(Request::Override { percent: 100 });
+    let ordered = ticks(Request::Move {
+        target_nm: 50_000_000,
+        feed_um_per_min: 3_000_000,
+    });
+    println!("ticks: status {status}, refused {refused}, override {order}, move {ordered}");
+    assert_eq!((status, refused), (1, 1));
+    // The plan is made first, which takes most of its lead of 16 ms.
+    assert!((2..=16).contains(&ordered), "{ordered}");
+    end(&guest, &mut tool);
 }

@@ -9,6 +9,7 @@ mod adversary;
 mod calibration;
 mod compensation;
 mod edges;
+mod link;
 mod one_stamp;
 mod samples;
 mod scope;
@@ -51,6 +52,7 @@ fn run(counter: &mut Counter) -> Result<(), ScenarioError> {
     calibration::run(counter);
     compensation::run(counter)?;
     scope::run(counter)?;
+    link::run(counter)?;
     simulator::run(counter)
 }
 

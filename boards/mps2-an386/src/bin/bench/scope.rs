@@ -16,7 +16,8 @@ use crate::standard_move;
 const SAMPLES: u32 = 256;
 const WORDS: usize = SAMPLES as usize * MOST_SIGNALS;
 
-const USUAL: [Signal; MOST_SIGNALS] = [
+/// Signals as people choose them.
+pub const USUAL: [Signal; MOST_SIGNALS] = [
     Signal::Position,
     Signal::Velocity,
     Signal::Acceleration,
