@@ -20,6 +20,7 @@ pub mod disc;
 pub mod drive;
 pub mod encoder;
 pub mod faults;
+pub mod flash;
 pub mod invariants;
 pub mod learning;
 pub mod machine;

@@ -5,19 +5,11 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use embedded_storage::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
-};
+pub use leadscrew_hal_mock::flash::CAPACITY;
+use leadscrew_hal_mock::flash::{Cells, ERASED, NotKept};
 
-/// Bytes of a sector; sector, word and length are those of the board in QEMU, so that either reads the other's image.
-const SECTOR: usize = 4096;
-/// Bytes of the whole flash.
-pub const CAPACITY: usize = 16 * SECTOR;
-/// Bytes that are written at a time.
-const WORD: usize = 4;
-const ERASED: u8 = 0xff;
-
-/// A flash. Clones are the same flash, as an axis that is switched on again finds it.
+/// The cells of a flash. Clones are the same ones, as an axis that is switched on again finds them; the board in QEMU reads
+/// the same images.
 #[derive(Clone, Debug)]
 pub struct FlashImage(Arc<Mutex<Image>>);
 
@@ -111,90 +103,20 @@ impl FlashImage {
     }
 }
 
-impl Image {
-    fn set(&mut self, at: usize, bytes: &[u8]) -> Result<(), FlashError> {
-        self.cells[at..at + bytes.len()].copy_from_slice(bytes);
-        if let Some(file) = &mut self.file {
-            let written = file
-                .seek(SeekFrom::Start(at as u64))
-                .and_then(|_| file.write_all(bytes));
-            written.map_err(|_| FlashError::Other)?;
-        }
-        Ok(())
-    }
-}
-
-/// Why an operation failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FlashError {
-    /// Not at the bounds of words or sectors.
-    NotAligned,
-    /// Beyond the end.
-    OutOfBounds,
-    /// A bit cannot be set without erasing, or the file failed.
-    Other,
-}
-
-impl NorFlashError for FlashError {
-    fn kind(&self) -> NorFlashErrorKind {
-        match self {
-            Self::NotAligned => NorFlashErrorKind::NotAligned,
-            Self::OutOfBounds => NorFlashErrorKind::OutOfBounds,
-            Self::Other => NorFlashErrorKind::Other,
-        }
-    }
-}
-
-fn within(offset: u32, len: usize, unit: usize) -> Result<usize, FlashError> {
-    let offset = offset as usize;
-    if !offset.is_multiple_of(unit) || !len.is_multiple_of(unit) {
-        return Err(FlashError::NotAligned);
-    }
-    match offset.checked_add(len) {
-        Some(end) if end <= CAPACITY => Ok(offset),
-        _ => Err(FlashError::OutOfBounds),
-    }
-}
-
-impl ErrorType for FlashImage {
-    type Error = FlashError;
-}
-
-impl ReadNorFlash for FlashImage {
-    const READ_SIZE: usize = 1;
-
-    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        let at = within(offset, bytes.len(), Self::READ_SIZE)?;
-        bytes.copy_from_slice(&self.image().cells[at..at + bytes.len()]);
-        Ok(())
+impl Cells for FlashImage {
+    fn look<R>(&self, look: impl FnOnce(&[u8]) -> R) -> R {
+        look(&self.image().cells)
     }
 
-    fn capacity(&self) -> usize {
-        CAPACITY
-    }
-}
-
-impl NorFlash for FlashImage {
-    const WRITE_SIZE: usize = WORD;
-    const ERASE_SIZE: usize = SECTOR;
-
-    fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
-        let len = to.checked_sub(from).ok_or(FlashError::OutOfBounds)? as usize;
-        let at = within(from, len, SECTOR)?;
-        self.image().set(at, &vec![ERASED; len])
-    }
-
-    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        let at = within(offset, bytes.len(), WORD)?;
+    fn set(&mut self, offset: usize, new: &[u8]) -> Result<(), NotKept> {
         let mut image = self.image();
-        let cells = &image.cells[at..at + bytes.len()];
-        if cells
-            .iter()
-            .zip(bytes)
-            .any(|(cell, new)| cell & new != *new)
-        {
-            return Err(FlashError::Other);
+        if let Some(file) = &mut image.file {
+            let written = file
+                .seek(SeekFrom::Start(offset as u64))
+                .and_then(|_| file.write_all(new));
+            written.map_err(|_| NotKept)?;
         }
-        image.set(at, bytes)
+        image.cells[offset..][..new.len()].copy_from_slice(new);
+        Ok(())
     }
 }

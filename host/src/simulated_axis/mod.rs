@@ -25,6 +25,7 @@ use leadscrew_app::report::Report;
 use leadscrew_app::store::Interlock;
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
 use leadscrew_client::Line;
+use leadscrew_hal_mock::flash::SimulatedFlash;
 use leadscrew_hal_mock::scenario::{Base, Scenario, ScenarioError, World, workshop};
 
 pub use flash::{CAPACITY, FlashImage, ImageError};
@@ -65,7 +66,7 @@ impl TickTimer for InTime {
 struct Firmware {
     runtime: Runtime<AxisControl<Plant>>,
     reports: Consumer<'static, Report>,
-    link: Link<FlashImage>,
+    link: Link<SimulatedFlash<FlashImage>>,
     loaded: Loaded,
     /// A machine is large: on the heap, so that whoever has an axis needs no large stack.
     plant: Box<Plant>,
@@ -196,7 +197,7 @@ impl Firmware {
         factory.axis.tick_hz = scenario.tick_hz;
         let counters: &'static Counters = Box::leak(Box::new(Counters::new()));
         let boot = Boot {
-            flash,
+            flash: SimulatedFlash(flash),
             range: 0..CAPACITY as u32,
             factory,
             identity: Identity {

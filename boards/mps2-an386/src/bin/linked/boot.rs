@@ -2,7 +2,7 @@
 
 use board_mps2_an386::carrier::Carrier;
 use board_mps2_an386::exit_failure;
-use board_mps2_an386::flash::{CAPACITY, Flash};
+use board_mps2_an386::flash::{self, CAPACITY, Flash};
 use board_mps2_an386::simulated::{COUNTERS, INTERLOCK, Plant};
 use board_mps2_an386::uart::{self, UART1};
 use leadscrew::compensation::Stretch;
@@ -35,7 +35,7 @@ pub fn axis(words: &Words, factory: Settings) -> (AxisControl<Plant>, Link<Flash
     static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
         ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
 
-    let Ok(flash) = Flash::open(words.flash.as_deref())
+    let Ok(flash) = flash::open(words.flash.as_deref())
         .inspect_err(|error| defmt::error!("flash={=str}: {}", words.flash_path(), error))
     else {
         exit_failure()

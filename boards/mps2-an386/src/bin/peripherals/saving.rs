@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use board_mps2_an386::exit_failure;
-use board_mps2_an386::flash::{CAPACITY, Flash};
+use board_mps2_an386::flash::{self, CAPACITY, Flash};
 use heapless::String;
 use leadscrew::axis::Outputs;
 use leadscrew::compensation::{ScrewError, ScrewPoint};
@@ -25,7 +25,7 @@ pub struct Saving<'i> {
 impl<'i> Saving<'i> {
     /// The store in the flash image at `path`; logs the number that it has, and ends the program if there is none to be had.
     pub fn open(path: Option<&str>, interlock: &'i Interlock) -> Self {
-        let Ok(flash) = Flash::open(path).inspect_err(|error| defmt::error!("flash: {}", error))
+        let Ok(flash) = flash::open(path).inspect_err(|error| defmt::error!("flash: {}", error))
         else {
             exit_failure()
         };

@@ -1,6 +1,6 @@
 //! The firmware of an axis with its link, tick by tick, each part of a tick counted by itself.
 
-use board_mps2_an386::flash::{CAPACITY, Flash};
+use board_mps2_an386::flash::{self, CAPACITY, Flash};
 use board_mps2_an386::instructions::Counter;
 use board_mps2_an386::timer::TIMER0;
 use heapless::Vec;
@@ -125,7 +125,7 @@ impl<'c> Rig<'c> {
             axis: scenario.axis_params(&machine, estimator)?,
             ..Settings::new(estimator)
         };
-        let Ok(flash) = Flash::open(None) else {
+        let Ok(flash) = flash::open(None) else {
             panic!("a flash that forgets is always there");
         };
         let boot = Boot {
