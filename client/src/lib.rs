@@ -35,6 +35,7 @@ pub use axis::{
 pub use connection::{Connection, Sample};
 pub use error::{Error, Refused};
 pub use identity::Identity;
+pub use line::noisy;
 pub use line::{DEFAULT_BAUD, Line, SerialLine, TcpLine};
 pub use options::{Options, Timing};
 pub use port::Port;

@@ -5,9 +5,9 @@ mod support;
 use std::time::Duration;
 
 use leadscrew::supervisor::State;
+use leadscrew_client::noisy::{Done, Faults, Noisy};
 use leadscrew_client::{Axis, Error, Options};
 use support::BenchLine;
-use support::noisy::{Done, Faults, Noisy};
 
 const MS: fn(u64) -> Duration = Duration::from_millis;
 
@@ -135,6 +135,7 @@ fn a_line_that_is_very_bad_stops_the_axis_and_is_told_of() {
         doubles: 0.1,
         delays: 0.1,
         delay: MS(60),
+        ..Faults::default()
     };
     let run = run(faults, 5);
     moved_nowhere_else(&run);

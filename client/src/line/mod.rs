@@ -1,5 +1,6 @@
 //! Carriers of bytes, each with a clock of its own.
 
+pub mod noisy;
 mod serial;
 mod tcp;
 

@@ -3,7 +3,6 @@
 // Each test of this crate uses a part of it.
 #![allow(dead_code)]
 
-pub mod noisy;
 #[path = "../../../tests/protocol/rig.rs"]
 pub mod rig;
 #[path = "../../../tests/support/seeded.rs"]

@@ -83,7 +83,11 @@ pub struct SimulatedAxis {
     to_tool: VecDeque<u8>,
     /// Bytes that the line may take by now.
     credit: f64,
+    watch: Option<Box<Watch>>,
 }
+
+/// Looks at every tick: what it put out, and whether it came with bytes from the tool.
+type Watch = dyn FnMut(&Record, bool);
 
 impl SimulatedAxis {
     /// Switches the workshop's machine on: what it is made of, its control rate unless its store says otherwise, and what
@@ -106,6 +110,7 @@ impl SimulatedAxis {
             to_axis: VecDeque::new(),
             to_tool: VecDeque::new(),
             credit: 0.0,
+            watch: None,
         })
     }
 
@@ -130,6 +135,11 @@ impl SimulatedAxis {
     #[must_use]
     pub const fn put_out(&self) -> &Record {
         &self.firmware.put_out
+    }
+
+    /// Lets `watch` look at every tick from now on: what it put out, and whether bytes came to the axis in it.
+    pub fn watch(&mut self, watch: impl FnMut(&Record, bool) + 'static) {
+        self.watch = Some(Box::new(watch));
     }
 
     /// Switches it off and on again: all but the flash is lost, and the machine stands where it stood at first.
@@ -169,6 +179,9 @@ impl SimulatedAxis {
             }
             has_room
         });
+        if let Some(watch) = &mut self.watch {
+            watch(&self.firmware.put_out, !bytes.is_empty());
+        }
     }
 
     /// Lets the line take as many bytes as it may in so many ticks.

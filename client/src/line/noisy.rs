@@ -1,4 +1,5 @@
-//! A line that loses, flips, doubles and delays frames, as often as it is told to.
+//! A line that loses, flips, doubles and delays frames and is cut, as often as it is told to: for tests of tools. What it
+//! does is drawn from a seed, so that a run is the same every time.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -6,7 +7,7 @@ use std::io;
 use std::rc::Rc;
 use std::time::Duration;
 
-use leadscrew_client::Line;
+use super::Line;
 
 /// How bad a line is: shares of the frames, each way, 0 to 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,16 +22,29 @@ pub struct Faults {
     pub delays: f64,
     /// How late.
     pub delay: Duration,
+    /// The line is dead for so long, from the first moment of every period but the first one.
+    pub cut: Duration,
+    /// The period; none of zero.
+    pub cut_every: Duration,
 }
 
 /// What it did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Done {
+    /// Frames that were sent, both ways.
     pub frames: u32,
+    /// Frames that the tool sent again.
+    pub repeated: u32,
+    /// Frames that never arrived.
     pub dropped: u32,
+    /// Frames with a wrong bit.
     pub flipped: u32,
+    /// Frames that arrived twice.
     pub doubled: u32,
+    /// Frames that arrived late.
     pub delayed: u32,
+    /// Frames that fell into a cut.
+    pub cut: u32,
 }
 
 /// A line with faults.
@@ -42,6 +56,8 @@ pub struct Noisy<L> {
     to_axis: Way,
     to_tool: Way,
     done: Rc<Cell<Done>>,
+    /// The frame that the tool sent last.
+    last: Vec<u8>,
 }
 
 /// One direction.
@@ -52,7 +68,16 @@ struct Way {
     late: VecDeque<(Duration, Vec<u8>)>,
 }
 
+impl Faults {
+    /// True while the line is dead.
+    fn is_cut(&self, now: Duration) -> bool {
+        let period = self.cut_every.as_nanos();
+        period > 0 && now.as_nanos() >= period && now.as_nanos() % period < self.cut.as_nanos()
+    }
+}
+
 impl<L: Line> Noisy<L> {
+    /// A line with `faults` over one without.
     pub fn new(line: L, faults: Faults, seed: u64) -> Self {
         Self {
             line,
@@ -62,12 +87,14 @@ impl<L: Line> Noisy<L> {
             to_axis: Way::default(),
             to_tool: Way::default(),
             done: Rc::default(),
+            last: Vec::new(),
         }
     }
 }
 
 impl<L> Noisy<L> {
     /// What it has done, also while somebody else has the line.
+    #[must_use]
     pub fn done(&self) -> Rc<Cell<Done>> {
         Rc::clone(&self.done)
     }
@@ -114,6 +141,10 @@ impl Way {
                 is(faults.delays),
             ];
             done.frames += 1;
+            if faults.is_cut(now) {
+                done.cut += 1;
+                continue;
+            }
             done.dropped += u32::from(drops);
             done.flipped += u32::from(flips);
             done.doubled += u32::from(doubles);
@@ -137,7 +168,7 @@ impl Way {
         while self.late.front().is_some_and(|(due, _)| *due <= now) {
             // A zero, since it may come within another frame's bytes on a real line.
             arrives.push(0);
-            arrives.extend(self.late.pop_front().unwrap().1);
+            arrives.extend(self.late.pop_front().into_iter().flat_map(|(_, frame)| frame));
         }
         arrives
     }
@@ -147,6 +178,10 @@ impl<L: Line> Line for Noisy<L> {
     fn exchange(&mut self, out: &[u8], received: &mut Vec<u8>) -> io::Result<Duration> {
         let Self { faults, random, .. } = self;
         let mut done = self.done.get();
+        if !out.is_empty() {
+            done.repeated += u32::from(self.last == out);
+            self.last = out.to_vec();
+        }
         let out = self.to_axis.pass(out, self.now, faults, random, &mut done);
         let mut came = Vec::new();
         self.now = self.line.exchange(&out, &mut came)?;
