@@ -115,7 +115,7 @@ pub enum Error {
         what: &'static str,
     },
     /// No parameter of that name.
-    #[error("no parameter `{name}`{}. List them; a name is section and name, with a point between them", suggested(.nearest.as_deref()))]
+    #[error("no parameter `{name}`{} List them; a name is section and name, with a point between them", suggested(.nearest.as_deref()))]
     UnknownParameter {
         /// The name.
         name: String,
@@ -258,5 +258,5 @@ fn fault_text(number: &u8) -> String {
 }
 
 fn suggested(nearest: Option<&str>) -> String {
-    nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
+    nearest.map_or_else(|| ".".to_owned(), |name| format!("; did you mean `{name}`?"))
 }
