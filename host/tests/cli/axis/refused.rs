@@ -182,7 +182,7 @@ fn another_version_of_the_protocol_is_told_with_what_to_do() {
 /// An axis of a version to come.
 fn answer_hello(listener: &TcpListener) {
     let (mut tool, _) = listener.accept().expect("a tool");
-    let mut decoder = Decoder::new();
+    let mut decoder: Decoder = Decoder::new();
     let mut buffer = [0; 512];
     while let Ok(count @ 1..) = tool.read(&mut buffer) {
         let mut out = Vec::new();
