@@ -258,5 +258,8 @@ fn fault_text(number: &u8) -> String {
 }
 
 fn suggested(nearest: Option<&str>) -> String {
-    nearest.map_or_else(|| ".".to_owned(), |name| format!("; did you mean `{name}`?"))
+    nearest.map_or_else(
+        || ".".to_owned(),
+        |name| format!("; did you mean `{name}`?"),
+    )
 }

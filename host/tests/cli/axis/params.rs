@@ -1,5 +1,8 @@
 //! Parameters of an axis.
 
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_host::commissioning::learned;
+
 use super::Bench;
 use crate::{assert_says, number};
 
@@ -83,4 +86,37 @@ fn a_file_of_the_old_shape_is_restored() {
     );
     let told = bench.printed("params restore old.toml");
     assert_says(&told, &["9000 -> 7000 mm/min"]);
+}
+
+#[test]
+fn calibration_goes_beside_a_backup_only_where_it_is_asked_for() {
+    let bench = Bench::commissioned();
+    let map = learned(&MachineParams::z_16k20f3(), 1).expect("a map");
+    bench.printed("params backup kept.toml");
+    std::fs::write(bench.0.path("kept.map"), &map).expect("it is written");
+    bench.printed("params restore kept.toml --save");
+    assert_says(
+        &bench.printed("params backup none.toml --calibration"),
+        &["no encoder map and no screw table"],
+    );
+    let told = bench.printed("params restore kept.toml --calibration --save");
+    assert_says(&told, &["encoder map", "kept.map", "CRC-32", "restart"]);
+
+    bench.printed("params backup plain.toml");
+    assert!(!bench.0.path("plain.map").exists());
+    let files = bench.json("params backup again.toml --calibration");
+    let checksum = &files[1]["crc32"];
+    assert!(
+        checksum.as_str().is_some_and(|crc| told.contains(crc)),
+        "{files} {told}"
+    );
+    let read = std::fs::read(bench.0.path("again.map")).expect("a map");
+    assert!(read == map, "the map is the same to the byte");
+
+    bench.printed("params reset --yes --keep-calibration");
+    bench.printed("params backup kept-map.toml --calibration");
+    assert!(bench.0.path("kept-map.map").exists());
+    bench.printed("params reset --yes");
+    bench.printed("params backup gone.toml --calibration");
+    assert!(!bench.0.path("gone.map").exists());
 }

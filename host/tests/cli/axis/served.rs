@@ -116,3 +116,17 @@ fn another_tool_takes_over_and_the_axis_stops() {
     let output = jog.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(3));
 }
+
+#[test]
+fn ctrl_c_switches_a_served_axis_off() {
+    let bench = Bench::new();
+    let mut served = bench.serve();
+    assert_eq!(served.json("status")["state"], "disabled");
+    interrupt(&served.child);
+    let ended = served.child.wait().expect("it ends");
+    assert_eq!(ended.code(), Some(0));
+    let message = served
+        .folder
+        .refused(1, &format!("--port {} status", served.port));
+    assert_says(&message, &["Nobody listens there"]);
+}
