@@ -13,7 +13,7 @@ use crate::simulated_axis::SimulatedAxis;
 /// An axis that falls behind the clock by more than this does not catch up: tools would see it race.
 const MOST_BEHIND: Duration = Duration::from_millis(200);
 
-/// An axis behind a TCP port, for one client at a time.
+/// An axis behind a TCP port, for one client at a time: the latest.
 pub struct Server {
     listener: TcpListener,
     client: Option<TcpStream>,
@@ -67,12 +67,9 @@ impl Server {
         Ok(())
     }
 
-    /// Takes the next client, once the one before is gone.
+    /// Takes a new client in place of the one before: who sits before the axis now counts.
     fn accept(&mut self) {
-        if self.client.is_some() {
-            return;
-        }
-        if let Ok((client, _)) = self.listener.accept() {
+        while let Ok((client, _)) = self.listener.accept() {
             // Replies are small and waited for.
             let is_set_up = client.set_nonblocking(true).is_ok();
             let _ = client.set_nodelay(true);

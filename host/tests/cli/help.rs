@@ -120,6 +120,27 @@ fn help_names_every_option_its_unit_and_its_default() {
 }
 
 #[test]
+fn help_names_what_works_on_an_axis() {
+    let folder = Folder::new();
+    let general = folder.printed("--help");
+    assert_says(
+        &general,
+        &[
+            "--port", "--flash", "status", "faults", "clear", "enable", "disable", "home", "move",
+            "jog", "hold", "resume", "stop", "override", "counters", "restart", "params", "run",
+            "serve",
+        ],
+    );
+    let params = folder.printed("params --help");
+    let subcommands = [
+        "list", "get", "set", "save", "backup", "restore", "diff", "reset",
+    ];
+    assert_says(&params, &subcommands);
+    assert_says(&folder.printed("move --help"), &["TARGET_MM", "mm/min"]);
+    assert_says(&folder.printed("run --help"), &["--keep", "--check"]);
+}
+
+#[test]
 fn the_version_is_that_of_the_package() {
     let printed = Folder::new().printed("--version");
     assert_eq!(

@@ -29,7 +29,7 @@ pub struct Run {
     /// The steps that were done.
     pub done: Vec<Done>,
     /// Why it ended early.
-    pub failure: Option<Failure>,
+    pub failure: Option<Box<Failure>>,
 }
 
 /// A step that failed.
@@ -130,7 +130,7 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    fn steps(&mut self, steps: &[Step]) -> Result<(), Failure> {
+    fn steps(&mut self, steps: &[Step]) -> Result<(), Box<Failure>> {
         for step in steps {
             if let Action::Repeat(passes, inner) = &step.action {
                 for pass in 1..=*passes {
@@ -139,10 +139,12 @@ impl Runner<'_> {
                 }
                 continue;
             }
-            let result = self.action(&step.action).map_err(|error| Failure {
-                line: step.line,
-                step: step.text.clone(),
-                error,
+            let result = self.action(&step.action).map_err(|error| {
+                Box::new(Failure {
+                    line: step.line,
+                    step: step.text.clone(),
+                    error,
+                })
             })?;
             self.note(step, result);
         }
