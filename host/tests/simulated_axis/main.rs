@@ -1,5 +1,8 @@
 //! The firmware in this process, over its link.
 
+mod bode;
 mod instruments;
+mod recordings;
+mod replays;
 mod session;
-mod troubles;
+mod support;
