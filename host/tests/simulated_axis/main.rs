@@ -2,6 +2,7 @@
 
 mod bode;
 mod instruments;
+mod monitor;
 mod recordings;
 mod replays;
 mod session;
