@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use leadscrew::scope::Signal;
 
+use super::YesArgs;
 use crate::axis::scope::{Before, TriggerText, signal};
 use crate::recorded::REPLAY_SIGNALS;
 
@@ -69,7 +70,7 @@ pub struct ScopeArgs {
     /// What of the recording lies before the trigger: a share, as 25%, or a time, as 0.2s
     #[arg(long, value_name = "SHARE|S", default_value = "25%", value_parser = before)]
     pub before: Before,
-    /// Make a move to this position once the scope is armed, mm from the origin; the axis must be enabled
+    /// Make a move to this position once the scope is armed, mm from the origin; an axis that is off is enabled for it
     #[arg(
         long = "move",
         value_name = "MM",
@@ -148,9 +149,9 @@ pub struct BodeArgs {
     /// Most that the axis may move, mm
     #[arg(long, value_name = "MM", default_value_t = 100.0)]
     pub travel_mm: f64,
-    /// Do not ask
-    #[arg(long)]
-    pub yes: bool,
+    /// Who is asked
+    #[command(flatten)]
+    pub yes: YesArgs,
     /// Draw the responses to FILE.svg or FILE.png
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,

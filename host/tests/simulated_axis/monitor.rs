@@ -15,9 +15,7 @@ const MS: fn(u64) -> Duration = Duration::from_millis;
 /// The screen of a session, as text.
 fn screen(session: &Session<'_>, width: u16, height: u16) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal
-        .draw(|frame| draw(frame, session.state()))
-        .unwrap();
+    terminal.draw(|frame| draw(frame, session.state())).unwrap();
     terminal.backend().to_string()
 }
 
@@ -86,7 +84,10 @@ fn a_fault_is_shown_and_cleared_and_what_is_refused_is_told() {
     look(&mut session, 1800);
     let shown = screen(&session, 80, 24);
     assert!(shown.contains("in fault"), "{shown}");
-    assert!(shown.contains("following-error") || shown.contains("encoder-loss"), "{shown}");
+    assert!(
+        shown.contains("following-error") || shown.contains("encoder-loss"),
+        "{shown}"
+    );
     session.press(Key::Right, MS(3000)).unwrap();
     assert!(!session.state().message.is_empty());
     session.press(Key::Letter('c'), MS(4000)).unwrap();

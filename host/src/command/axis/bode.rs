@@ -1,11 +1,11 @@
 //! `leadscrew bode`: frequency responses of the drive and of the closed loop.
 
 use std::fmt::Write as _;
-use std::io::{self, BufRead, Write as _};
 
 use leadscrew_client::Axis;
 use serde::Serialize;
 
+use super::person::Person;
 use crate::axis::bode::{Chirp, DriveCurve, Point, closed_loop, drive};
 use crate::cli::BodeArgs;
 use crate::command::{check_outputs_of, print, print_json};
@@ -111,9 +111,6 @@ fn agree(
             args.travel_mm
         )));
     }
-    if args.yes {
-        return Ok(());
-    }
     let mut text = String::new();
     if drive {
         let _ = writeln!(
@@ -129,17 +126,9 @@ fn agree(
             travel.loop_mm
         );
     }
-    let mut out = io::stderr();
-    let asked = write!(out, "{text}Is the way free? [y/N] ").and_then(|()| out.flush());
-    asked.map_err(CommandError::Print)?;
-    let mut answer = String::new();
-    let read = io::stdin().lock().read_line(&mut answer);
-    read.map_err(|error| CommandError::Data(format!("nobody can be asked ({error}): use --yes")))?;
-    if matches!(answer.trim(), "y" | "Y" | "yes") {
-        Ok(())
-    } else {
-        Err(CommandError::Data("nothing was moved".to_owned()))
-    }
+    let mut person = Person::new(&args.yes, args.json);
+    person.agreed(&format!("{text}Is the way free?"))?;
+    Ok(())
 }
 
 fn rows(points: &[Point], model: Option<&DriveCurve>) -> Vec<Row> {

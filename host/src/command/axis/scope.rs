@@ -30,7 +30,14 @@ pub fn run(axis: &mut Axis, args: &ScopeArgs) -> Result<(), CommandError> {
         feed_mm_per_min,
     });
     let patience = Duration::from_secs_f64(args.wait);
+    let is_off = motion.is_some() && !axis.status()?.is_enabled;
+    if is_off {
+        axis.enable()?;
+    }
     let recording = record(axis, &wanted, motion, patience)?;
+    if is_off {
+        axis.disable()?;
+    }
     let recorded = Recorded::of(axis, Source::Scope, recording)?;
     tell(&recorded, "Scope", &args.to)
 }
