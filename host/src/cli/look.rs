@@ -132,9 +132,12 @@ pub struct BodeArgs {
     /// Length of each chirp, s
     #[arg(long, value_name = "S", default_value = "6", value_parser = seconds)]
     pub seconds: f64,
-    /// Amplitude of the chirps, % of full command
+    /// Amplitude of the drive's chirp, % of full command
     #[arg(long, value_name = "%", default_value_t = 3.0)]
     pub amplitude: f64,
+    /// Amplitude of the closed loop's chirp, % of full command; it turns the axis back, so friction has to be small beside it
+    #[arg(long, value_name = "%", default_value_t = 10.0)]
+    pub loop_amplitude: f64,
     /// Command about which the drive's chirp swings, % of full command; negative: the axis goes backward
     #[arg(
         long,

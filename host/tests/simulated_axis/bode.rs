@@ -71,7 +71,7 @@ fn the_closed_loop_takes_back_what_is_slow_and_not_what_is_fast() {
 
 #[test]
 fn what_cannot_be_is_refused_before_anything_moves() {
-    let check = |chirp: Chirp| chirp.check(1000.0).unwrap_err().to_string();
+    let check = |chirp: Chirp| chirp.check_drive(1000.0).unwrap_err().to_string();
     let turns = Chirp {
         centre: 0.02,
         ..CHIRP

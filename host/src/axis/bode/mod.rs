@@ -83,8 +83,20 @@ impl Chirp {
             ));
         }
         if !(0.001..=0.5).contains(&self.amplitude) {
-            return usage("--amplitude: expected 0.1 to 50 % of full command".to_owned());
+            return usage(
+                "--amplitude, --loop-amplitude: expected 0.1 to 50 % of full command".to_owned(),
+            );
         }
+        Ok(())
+    }
+
+    /// The same for the drive's, which does not turn the axis back.
+    ///
+    /// # Errors
+    /// As of [`Self::check`].
+    pub fn check_drive(&self, tick_hz: f64) -> Result<(), CommandError> {
+        self.check(tick_hz)?;
+        let usage = |text: String| Err(CommandError::Usage(text));
         if self.centre.abs() <= self.amplitude || self.centre.abs() + self.amplitude > 0.9 {
             return usage(
                 "--centre: it has to be above the amplitude, so that the axis does not turn back, and 90 % of full command \
@@ -139,7 +151,7 @@ impl Chirp {
 /// The experiment did not run to its end, samples were lost, the axis.
 pub fn drive(axis: &mut Axis, chirp: &Chirp, full_feed: f64) -> Result<Vec<Point>, CommandError> {
     let scale = axis.scale()?;
-    chirp.check(scale.tick_hz)?;
+    chirp.check_drive(scale.tick_hz)?;
     let way = chirp.travel(full_feed).drive_mm;
     let program = chirp.program(chirp.centre, scale, full_feed, way);
     let records = run(axis, &program)?;

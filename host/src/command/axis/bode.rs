@@ -6,7 +6,7 @@ use leadscrew_client::Axis;
 use serde::Serialize;
 
 use super::person::Person;
-use crate::axis::bode::{Chirp, DriveCurve, Point, closed_loop, drive};
+use crate::axis::bode::{Chirp, DriveCurve, Point, Travel, closed_loop, drive};
 use crate::cli::BodeArgs;
 use crate::command::{check_outputs_of, print, print_json};
 use crate::error::CommandError;
@@ -22,6 +22,7 @@ struct Report {
     schema: &'static str,
     full_command_feed_mm_per_min: f64,
     amplitude_percent: f64,
+    loop_amplitude_percent: f64,
     centre_percent: f64,
     drive: Option<Vec<Row>>,
     closed_loop: Option<Vec<Row>>,
@@ -52,11 +53,22 @@ pub fn run(axis: &mut Axis, args: &BodeArgs) -> Result<(), CommandError> {
         centre: args.centre / 100.0,
         points: args.points.into(),
     };
-    chirp.check(axis.scale()?.tick_hz)?;
+    let loop_chirp = Chirp {
+        amplitude: args.loop_amplitude / 100.0,
+        centre: 0.0,
+        ..chirp
+    };
+    let tick_hz = axis.scale()?.tick_hz;
+    chirp.check_drive(tick_hz)?;
+    loop_chirp.check(tick_hz)?;
     let full_feed = axis.parameter("motion.full_command_feed_mm_per_min")?;
     let full_feed = full_feed.number().unwrap_or_default();
     let wants = |what: &str| args.only.as_deref().is_none_or(|only| only == what);
-    agree(&chirp, full_feed, args, [wants("drive"), wants("loop")])?;
+    let travel = Travel {
+        loop_mm: loop_chirp.travel(full_feed).loop_mm,
+        ..chirp.travel(full_feed)
+    };
+    agree(travel, args, [wants("drive"), wants("loop")])?;
     let was_enabled = axis.status()?.is_enabled;
     if !was_enabled {
         axis.enable()?;
@@ -65,6 +77,7 @@ pub fn run(axis: &mut Axis, args: &BodeArgs) -> Result<(), CommandError> {
         schema: "leadscrew/bode/1",
         full_command_feed_mm_per_min: full_feed,
         amplitude_percent: args.amplitude,
+        loop_amplitude_percent: args.loop_amplitude,
         centre_percent: args.centre,
         drive: None,
         closed_loop: None,
@@ -78,7 +91,7 @@ pub fn run(axis: &mut Axis, args: &BodeArgs) -> Result<(), CommandError> {
         axis.move_and_wait(begin, (args.centre.abs() / 100.0 * full_feed).max(1.0))?;
     }
     if wants("loop") {
-        let points = closed_loop(axis, &chirp, full_feed)?;
+        let points = closed_loop(axis, &loop_chirp, full_feed)?;
         report.closed_loop = Some(rows(&points, None));
     }
     if !was_enabled {
@@ -95,19 +108,14 @@ pub fn run(axis: &mut Axis, args: &BodeArgs) -> Result<(), CommandError> {
 }
 
 /// Says what will move and how far, refuses what is farther than it may be, and asks.
-fn agree(
-    chirp: &Chirp,
-    full_feed: f64,
-    args: &BodeArgs,
-    [drive, closed]: [bool; 2],
-) -> Result<(), CommandError> {
-    let travel = chirp.travel(full_feed);
+fn agree(travel: Travel, args: &BodeArgs, [drive, closed]: [bool; 2]) -> Result<(), CommandError> {
     let farthest = if drive { travel.drive_mm.abs() } else { 0.0 };
-    if farthest.max(travel.loop_mm) > args.travel_mm {
+    let swing = if closed { travel.loop_mm } else { 0.0 };
+    if farthest.max(swing) > args.travel_mm {
         return Err(CommandError::Usage(format!(
             "the axis would move by {:.1} mm, more than the {} mm of --travel-mm: choose a smaller --centre or fewer --seconds, \
              or allow it",
-            farthest.max(travel.loop_mm),
+            farthest.max(swing),
             args.travel_mm
         )));
     }

@@ -120,7 +120,13 @@ impl Row {
 pub fn figure(title: &str, recording: &Recording) -> Figure {
     let times = recording.times();
     let mut panels: Vec<(String, Panel)> = Vec::new();
+    let is_bits = |signal: Signal| matches!(signal, Signal::Tick | Signal::Flags);
+    let are_all_bits = recording.signals.iter().all(|signal| is_bits(*signal));
     for &signal in &recording.signals {
+        // Nobody reads bits from a curve.
+        if is_bits(signal) && !are_all_bits {
+            continue;
+        }
         let unit = recording.physical(signal).unit;
         let key = match (signal, unit) {
             (Signal::FollowingError, _) => "following error, mm".to_owned(),
