@@ -1,6 +1,7 @@
 //! The command line.
 
 mod axis;
+mod look;
 mod procedures;
 mod shared;
 
@@ -13,6 +14,7 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
@@ -170,7 +172,7 @@ pub struct SimArgs {
 /// Arguments of `replay`.
 #[derive(Debug, Args)]
 pub struct ReplayArgs {
-    /// The capture: VCD, sigrok CSV or Saleae Logic 2 CSV
+    /// The capture: VCD, sigrok CSV or Saleae Logic 2 CSV; or a recording of `scope` or `record`, whose core is run again
     pub file: PathBuf,
     /// Control rate at which the core samples the capture, Hz (100 to 40000)
     #[arg(

@@ -19,6 +19,9 @@ pub enum CommandError {
     /// A machine or a scenario file cannot be used.
     #[error(transparent)]
     TomlFile(#[from] crate::toml_file::TomlFileError),
+    /// A recording of an axis cannot be read.
+    #[error(transparent)]
+    Recorded(#[from] crate::recorded::ReadError),
     /// An encoder map cannot be used.
     #[error(transparent)]
     MapFile(#[from] crate::map_file::MapFileError),

@@ -18,6 +18,7 @@ pub mod identify;
 pub mod listening;
 pub mod machine_file;
 pub mod map_file;
+pub mod monitor;
 pub mod parallel;
 pub mod plot;
 mod progress;

@@ -4,6 +4,7 @@
 //! Nothing here asks or prints: whoever calls gives a [`Guide`] where a person has to decide.
 
 pub mod backup;
+pub mod bode;
 mod calm;
 pub mod fault_report;
 mod follow;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use leadscrew::scope::{Setup, Signal, Signals};
 use leadscrew_client::{Axis, Recording, Scale};
 
-pub use trigger::{TriggerText, WhatTrigger};
+pub use trigger::{TriggerText, WhatTrigger, signal};
 
 use crate::error::CommandError;
 

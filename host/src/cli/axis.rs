@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{JsonArgs, NullOffsetArgs, SetupArgs};
+use super::{BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, SetupArgs};
 
 /// What works on an axis.
 #[derive(Debug, Subcommand)]
@@ -50,6 +50,14 @@ pub enum AxisCommand {
     Setup(SetupArgs),
     /// Measures the offset of the drive and sets the loop against it
     NullOffset(NullOffsetArgs),
+    /// Records up to 8 signals in the tick, around a trigger, without loss
+    Scope(ScopeArgs),
+    /// Records telemetry for a time, into a file that `replay` reads
+    Record(RecordArgs),
+    /// Shows the axis on the terminal, live, with keys to jog and stop it
+    Monitor,
+    /// Measures frequency responses of drive and closed loop by chirps
+    Bode(BodeArgs),
 }
 
 /// Arguments of `move`.

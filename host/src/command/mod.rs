@@ -79,20 +79,32 @@ fn too_long(file: &Path, ticks: u64, tick_hz: f64) -> CommandError {
 
 /// Refuses, before any work is done, output files that would destroy something.
 fn check_outputs(output: &OutputArgs, input: Option<&Path>) -> Result<(), CommandError> {
-    if let Some(path) = &output.plot
+    check_outputs_of(
+        ("--csv", output.csv.as_deref()),
+        ("--plot", output.plot.as_deref()),
+        input,
+    )
+}
+
+/// The same of a table and a plot with the names of their options.
+fn check_outputs_of(
+    table: (&str, Option<&Path>),
+    plot: (&str, Option<&Path>),
+    input: Option<&Path>,
+) -> Result<(), CommandError> {
+    if let (_, Some(path)) = plot
         && !is_picture(path)
     {
-        return Err(PlotError::Extension { path: path.clone() }.into());
+        return Err(PlotError::Extension { path: path.into() }.into());
     }
-    let files = [("--csv", &output.csv), ("--plot", &output.plot)];
-    for (option, path) in files {
+    for (option, path) in [table, plot] {
         let Some(path) = path else { continue };
         check_replaceable(option, path, input)?;
     }
-    match (&output.csv, &output.plot) {
-        (Some(csv), Some(plot)) if csv == plot || same_file(csv, plot) => {
+    match (table, plot) {
+        ((one, Some(csv)), (other, Some(plot))) if csv == plot || same_file(csv, plot) => {
             Err(CommandError::Usage(format!(
-                "--csv and --plot are both {}: give two names",
+                "{one} and {other} are both {}: give two names",
                 csv.display()
             )))
         }

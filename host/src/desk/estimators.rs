@@ -28,7 +28,7 @@ pub struct Compared {
     pub difference: Option<Spread>,
 }
 
-/// Runs all estimators, that of the axis first, and compares.
+/// Runs the estimators that go by counts, that of the axis first whatever it goes by, and compares.
 ///
 /// # Errors
 /// What the recording lacks.
@@ -40,7 +40,10 @@ pub fn estimators(desk: &Desk<'_>) -> Result<Vec<Compared>, Lacking> {
         .estimators
         .of(desk.config.estimators.paths().display);
     let others = all_estimators();
-    let others = others.into_iter().filter(|one| one.name() != own.name());
+    // What goes by the times of edges has nothing to go by.
+    let others = others
+        .into_iter()
+        .filter(|one| one.name() != own.name() && !one.reads_edges());
     let configs: Vec<_> = std::iter::once(own).chain(others).collect();
     let mut listening = Listening::new(&configs, desk.config.edges);
     let mut estimates = vec![Vec::with_capacity(counts.len()); configs.len()];

@@ -98,7 +98,7 @@ pub fn faults(desk: &Desk<'_>) -> Result<Faults, Lacking> {
         flags,
     };
     let ticks = &desk.recorded.recording.ticks;
-    let mut supervisor = Supervisor::new(desk.config.supervisor);
+    let mut supervisor = Supervisor::new(desk.monitors);
     let mut unwrapper = Unwrapper::new();
     if matches!(state_of(flags[0]), 2 | 3) {
         enable(&mut supervisor, (ticks[0] as u32).wrapping_sub(1));

@@ -18,6 +18,7 @@ use leadscrew::estimator::EstimatorConfig;
 use leadscrew::params::AxisConfig;
 use leadscrew::scope::Signal;
 use leadscrew::settings::Settings;
+use leadscrew::supervisor;
 
 pub use estimators::{Compared, estimators};
 pub use faults::{Derived, Faults, faults};
@@ -39,6 +40,7 @@ pub type Lacking = String;
 pub struct Desk<'a> {
     recorded: &'a Recorded,
     config: AxisConfig,
+    monitors: supervisor::Config,
     is_every_tick: bool,
 }
 
@@ -56,10 +58,16 @@ impl<'a> Desk<'a> {
         let config = settings
             .validate()
             .map_err(|error| format!("the parameters of the recording make no axis: {error}"))?;
+        // Indexes are not recorded: they are none to wait for.
+        settings.axis.motion.counts_per_revolution = 0.0;
+        let without_index = settings
+            .validate()
+            .map_err(|error| format!("the parameters of the recording make no axis: {error}"))?;
         let recording = &recorded.recording;
         Ok(Self {
             recorded,
             config,
+            monitors: without_index.supervisor,
             is_every_tick: recording.every == 1 && recording.missing() == 0 && !recording.is_torn,
         })
     }

@@ -53,6 +53,7 @@ impl Recorded {
             };
             parameters.push((parameter.name, value));
         }
+        parameters.sort_by(|(one, _), (other, _)| one.cmp(other));
         let fault = axis.fault_page()?.as_ref().map(fault_of);
         let identity = axis.identity();
         Ok(Self {

@@ -1,5 +1,9 @@
 //! The firmware in this process, over its link.
 
+mod bode;
 mod instruments;
+mod monitor;
+mod recordings;
+mod replays;
 mod session;
-mod troubles;
+mod support;

@@ -1,6 +1,7 @@
 //! Commands that work on an axis behind a port. Ctrl-C stops the axis first.
 
 mod autotune;
+pub mod bode;
 mod calibrate_encoder;
 mod changes;
 mod confirm;
@@ -9,11 +10,15 @@ pub mod faults;
 mod identify;
 pub mod identity;
 mod interrupt;
+pub mod monitor;
 pub mod motion;
 mod null_offset;
 pub mod params;
 mod person;
+pub mod record;
+pub mod recording;
 pub mod run;
+pub mod scope;
 pub mod serve;
 mod setup;
 pub mod status;
@@ -69,6 +74,10 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Params(command) => params::run(axis, command),
         AxisCommand::Setup(args) => setup::run(axis, args),
         AxisCommand::NullOffset(args) => null_offset::run(axis, args),
+        AxisCommand::Scope(args) => scope::run(axis, args),
+        AxisCommand::Record(args) => record::run(axis, args),
+        AxisCommand::Monitor => monitor::run(axis),
+        AxisCommand::Bode(args) => bode::run(axis, args),
         // Those that need more than an axis.
         AxisCommand::Run(_) | AxisCommand::Serve(_) => Ok(()),
     }

@@ -1,5 +1,6 @@
 //! `leadscrew replay`: the core on a capture of a real encoder.
 
+mod axis;
 mod report;
 
 use std::path::Path;
@@ -37,6 +38,9 @@ const DEFAULT_ESTIMATOR: &str = "exponential";
 /// # Errors
 /// Bad usage, a capture that cannot be read, or a file that cannot be written.
 pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
+    if crate::recorded::is_recording(&args.file) {
+        return axis::run(args);
+    }
     let tick_hz = tick_rate(args.tick_hz)?;
     let configs = match &args.estimator {
         Some(name) => vec![chosen(name, args.window, args.answer.as_deref())?],
