@@ -73,7 +73,7 @@ fn help_names_every_option_its_unit_and_its_default() {
     assert_says(
         &calibrate,
         &[
-            "<FILES>...",
+            "[FILES]...",
             "--edges-per-rev",
             "--out",
             "--form",
