@@ -162,9 +162,8 @@ impl<'a> Session<'a> {
 fn clear(axis: &mut Axis) -> Result<(), Error> {
     let status = axis.status()?;
     if status.fault_number != 0 {
-        if status.is_enabled {
-            axis.disable()?;
-        }
+        // Enable is still asked for, though the drive is off.
+        axis.disable()?;
         axis.clear_fault()?;
     }
     if status.warning_bits != 0 {
