@@ -66,6 +66,10 @@ impl<'a> Session<'a> {
         self.told(heard)?;
         self.state.status = self.axis.status()?;
         self.keys.note_hold(self.state.status.is_held);
+        if !self.state.status.is_enabled {
+            // Whatever stopped it, a key that is still held does not go on with it.
+            self.keys.forget_jog();
+        }
         self.state.feed = self.keys.feed();
         let recording = self.live.recording_mut();
         self.state.lost += recording.missing();
@@ -158,9 +162,8 @@ impl<'a> Session<'a> {
 fn clear(axis: &mut Axis) -> Result<(), Error> {
     let status = axis.status()?;
     if status.fault_number != 0 {
-        if status.is_enabled {
-            axis.disable()?;
-        }
+        // Enable is still asked for, though the drive is off.
+        axis.disable()?;
         axis.clear_fault()?;
     }
     if status.warning_bits != 0 {
