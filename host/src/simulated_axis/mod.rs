@@ -20,6 +20,7 @@ use leadscrew::settings::Settings;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::{AxisControl, Inlet};
 use leadscrew_app::link::{Boot, Link, Loaded, Memory, WORDS};
+use leadscrew_app::modbus::Panel as _;
 use leadscrew_app::queues::Queues;
 use leadscrew_app::report::Report;
 use leadscrew_app::store::Interlock;
@@ -30,8 +31,8 @@ use leadscrew_hal_mock::scenario::{Base, Scenario, ScenarioError, World, worksho
 
 pub use flash::{CAPACITY, FlashImage, ImageError};
 
-/// Ticks that an exchange lets pass: 5 ms at 1 kHz.
-const TICKS_OF_EXCHANGE: u32 = 5;
+/// Time that an exchange lets pass, s.
+const EXCHANGE_S: f64 = 0.005;
 /// Bytes that wait for the line to take them.
 const OUTBOX: usize = 4096;
 /// Bits a second of the line, 10 of them a byte.
@@ -71,6 +72,7 @@ struct Firmware {
     /// A machine is large: on the heap, so that whoever has an axis needs no large stack.
     plant: Box<Plant>,
     put_out: Record,
+    tick_hz: f64,
 }
 
 /// An axis that is simulated.
@@ -79,6 +81,7 @@ pub struct SimulatedAxis {
     flash: FlashImage,
     firmware: Box<Firmware>,
     ticks: u64,
+    time_s: f64,
     to_axis: VecDeque<u8>,
     to_tool: VecDeque<u8>,
     /// Bytes that the line may take by now.
@@ -107,6 +110,7 @@ impl SimulatedAxis {
             flash,
             scenario,
             ticks: 0,
+            time_s: 0.0,
             to_axis: VecDeque::new(),
             to_tool: VecDeque::new(),
             credit: 0.0,
@@ -162,13 +166,14 @@ impl SimulatedAxis {
     /// Time since it was first switched on.
     #[must_use]
     pub fn time(&self) -> Duration {
-        Duration::from_secs_f64(self.ticks as f64 / self.scenario.tick_hz)
+        Duration::from_secs_f64(self.time_s)
     }
 
     /// One tick, with what the line brings in it.
     pub fn tick(&mut self) {
         self.ticks += 1;
-        let of_tick = BAUD / 10.0 / self.scenario.tick_hz;
+        self.time_s += 1.0 / self.firmware.tick_hz;
+        let of_tick = BAUD / 10.0 / self.firmware.tick_hz;
         let arriving = self.to_axis.len().min(of_tick.ceil() as usize);
         let bytes: Vec<u8> = self.to_axis.drain(..arriving).collect();
         let to_tool = &mut self.to_tool;
@@ -186,7 +191,7 @@ impl SimulatedAxis {
 
     /// Lets the line take as many bytes as it may in so many ticks.
     fn take(&mut self, ticks: u32, received: &mut Vec<u8>) {
-        self.credit += f64::from(ticks) * BAUD / 10.0 / self.scenario.tick_hz;
+        self.credit += f64::from(ticks) * BAUD / 10.0 / self.firmware.tick_hz;
         let most = self.to_tool.len().min(self.credit as usize);
         received.extend(self.to_tool.drain(..most));
         self.credit = if self.to_tool.is_empty() {
@@ -198,8 +203,12 @@ impl SimulatedAxis {
 }
 
 #[inline(never)]
-fn plant(scenario: &Scenario<'static>) -> Result<Box<Plant>, ScenarioError> {
-    Ok(Box::new(Plant(World::new(&scenario.plant(), scenario)?)))
+fn plant(scenario: &Scenario<'static>, tick_hz: f64) -> Result<Box<Plant>, ScenarioError> {
+    let scenario = Scenario {
+        tick_hz,
+        ..*scenario
+    };
+    Ok(Box::new(Plant(World::new(&scenario.plant(), &scenario)?)))
 }
 
 impl Firmware {
@@ -234,6 +243,8 @@ impl Firmware {
             counters,
         };
         let (control, link, loaded) = boot.start()?;
+        // What is stored comes before what the axis was made for.
+        let tick_hz = link.view().scale.tick_hz();
         let reports: &'static mut Queue<Report, REPORTS> = Box::leak(Box::new(Queue::new()));
         let (producer, reports) = reports.split();
         Ok(Box::new(Self {
@@ -241,7 +252,8 @@ impl Firmware {
             reports,
             link,
             loaded,
-            plant: plant(scenario)?,
+            plant: plant(scenario, tick_hz)?,
+            tick_hz,
             put_out: Record::default(),
         }))
     }
@@ -262,10 +274,11 @@ impl Firmware {
 impl Line for SimulatedAxis {
     fn exchange(&mut self, out: &[u8], received: &mut Vec<u8>) -> io::Result<Duration> {
         self.to_axis.extend(out);
-        for _ in 0..TICKS_OF_EXCHANGE {
+        let ticks = (EXCHANGE_S * self.firmware.tick_hz).round().max(1.0) as u32;
+        for _ in 0..ticks {
             self.tick();
         }
-        self.take(TICKS_OF_EXCHANGE, received);
+        self.take(ticks, received);
         if self.firmware.link.wants_restart() && self.to_tool.is_empty() {
             self.power_cycle().map_err(io::Error::other)?;
         }

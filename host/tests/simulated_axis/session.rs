@@ -66,3 +66,27 @@ fn an_axis_is_set_saved_and_moved_and_is_the_same_after_a_power_cycle() {
         assert_eq!(found, Some(value), "{name}");
     }
 }
+
+#[test]
+fn another_control_rate_is_in_force_after_a_restart() {
+    let mut tool = axis(&FlashImage::blank());
+    tool.edit_parameters(|edit| {
+        for (name, value) in tuned() {
+            edit.set_parameter(&name, value)?;
+        }
+        edit.set_parameter("tick_hz", 2000.0)
+    })
+    .unwrap();
+    tool.save_parameters().unwrap();
+    tool.restart().unwrap();
+    let before = tool.status().unwrap().tick;
+    let began = tool.connection().now();
+    tool.wait(std::time::Duration::from_secs(1)).unwrap();
+    let ticks = tool.status().unwrap().tick - before;
+    let time = tool.connection().now() - began;
+    let rate = f64::from(ticks) / time.as_secs_f64();
+    assert!((rate - 2000.0).abs() < 20.0, "{rate}");
+    tool.enable().unwrap();
+    let status = tool.move_and_wait(5.0, 3000.0).unwrap();
+    assert!((status.position_mm - 5.0).abs() < 0.02, "{status:?}");
+}

@@ -160,7 +160,7 @@ impl Report {
         if let Some(rows) = &self.drive {
             let _ = writeln!(
                 text,
-                "drive: command to velocity, 0 dB is {} mm/min at full command; model: the drive of [observer]\n{}",
+                "drive: command to velocity, 0 dB is {:.1} mm/min at full command; model: the drive of [observer]\n{}",
                 self.full_command_feed_mm_per_min,
                 table(rows)
             );
