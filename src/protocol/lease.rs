@@ -88,6 +88,13 @@ impl Lease {
         self.take(session, tick)
     }
 
+    /// Lets it count from `tick` on, whoever holds it.
+    pub const fn prolong(&mut self, tick: u32) {
+        if let Some(holder) = &mut self.holder {
+            holder.renewed = tick;
+        }
+    }
+
     /// Takes it back from `session`.
     ///
     /// # Errors

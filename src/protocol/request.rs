@@ -277,6 +277,23 @@ impl Request<'_> {
             )
     }
 
+    /// True for what the axis may compute or write for longer than a lease lasts.
+    #[must_use]
+    pub const fn takes_long(&self) -> bool {
+        matches!(
+            self,
+            Self::SetParameter { .. }
+                | Self::SetWord { .. }
+                | Self::TakeParameters { .. }
+                | Self::SaveParameters { .. }
+                | Self::SaveBytes { .. }
+                | Self::Erase { .. }
+                | Self::FinishLearning { .. }
+                | Self::TakeMap { .. }
+                | Self::SaveMap { .. }
+        )
+    }
+
     /// True for what only asks: twice is as good as once.
     #[must_use]
     pub const fn is_query(&self) -> bool {

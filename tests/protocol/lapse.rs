@@ -135,3 +135,22 @@ fn anybody_may_stop_and_a_lease_is_not_given_back_in_motion() {
     let velocity: f64 = rig.way.axis.outputs().setpoint.velocity.to_num();
     assert!(velocity < 90.0, "{velocity}");
 }
+
+#[test]
+fn a_tool_loses_no_lease_while_the_axis_is_off_and_takes_its_time_for_settings() {
+    let mut rig = Rig::new();
+    rig.ready();
+    rig.do_(&Request::Disable {});
+    rig.run(500);
+    rig.renew_every = None;
+    rig.do_(&Request::SetParameter {
+        name: "motion.max_feed_mm_per_min",
+        value: 5000.0,
+    });
+    // As long as the observer takes on a board without double precision.
+    rig.run(2000);
+    rig.do_(&Request::EditParameters {});
+    // From the next request on it counts as ever.
+    rig.run(101);
+    rig.refused(&Request::DropParameters {}, Refusal::LeaseRequired);
+}

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use leadscrew_client::{Axis, Line, Options};
@@ -69,6 +69,8 @@ pub struct Agreeing {
     pub asked: Vec<String>,
     /// Not to questions with this in them.
     pub refuses: Option<&'static str>,
+    /// Presses Ctrl-C when a progress begins so.
+    pub interrupts: Option<(&'static str, Arc<AtomicBool>)>,
 }
 
 impl Guide for Agreeing {
@@ -78,7 +80,11 @@ impl Guide for Agreeing {
     }
 
     fn progress(&mut self, text: &str) {
-        println!("  … {text}");
+        if let Some((begin, flag)) = &self.interrupts
+            && text.starts_with(begin)
+        {
+            flag.store(true, Ordering::Relaxed);
+        }
     }
 
     fn agree(&mut self, question: &str, _: bool) -> Result<bool, ProcedureError> {

@@ -75,6 +75,8 @@ struct Inner {
     last_done: Done,
     /// The lease has lapsed, and the axis does not know yet.
     must_disable: bool,
+    /// The axis itself took its time for a request, while it was off: the lease lasts until the next one comes.
+    was_busy: bool,
     /// A record in so many ticks; 0 for none.
     every: u16,
     until_record: u16,
@@ -110,6 +112,7 @@ impl Service {
                 mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
                 last_done: Done::Nothing,
                 must_disable: false,
+                was_busy: false,
                 every: 0,
                 until_record: 0,
                 next_record: 0,
@@ -231,7 +234,7 @@ impl Service {
 impl Inner {
     fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.mover.look(seen, port);
-        self.must_disable |= self.lease.has_lapsed(seen.tick);
+        self.must_disable |= !self.was_busy && self.lease.has_lapsed(seen.tick);
         // Asked again until there is a way on.
         if self.must_disable && port.order(&Order::Enable(false)).is_ok() {
             self.must_disable = false;
@@ -241,6 +244,9 @@ impl Inner {
     /// Takes a frame; the answer, if it has one, is left in the buffer.
     fn take(&mut self, frame: &Frame<'_>, dropped: &mut Dropped, seen: &Seen, port: &mut dyn Port) {
         self.buffer.clear();
+        if core::mem::take(&mut self.was_busy) {
+            self.lease.prolong(seen.tick);
+        }
         let Header {
             channel, session, ..
         } = frame.header;
@@ -288,7 +294,7 @@ impl Inner {
                     self.last_done = Done::Nothing;
                     return self.query(header, &request, dropped, seen, port);
                 }
-                Some(request) => match self.carry_out(&request, seen, port) {
+                Some(request) => match self.worked(&request, seen, port) {
                     Ok(Passed::OnItsWay(ticket)) => {
                         self.last_done = Done::Waits(header, ticket);
                         return;
@@ -302,6 +308,19 @@ impl Inner {
             },
         };
         self.answer(header, &Self::reply(seen, outcome));
+    }
+
+    /// Carries it out. What takes long on an axis that is off costs its tool no lease: nothing can move before another
+    /// request comes.
+    fn worked(
+        &mut self,
+        request: &Request<'_>,
+        seen: &Seen,
+        port: &mut dyn Port,
+    ) -> Result<Passed, Refusal> {
+        let done = self.carry_out(request, seen, port);
+        self.was_busy = request.takes_long() && Self::check_off(seen).is_ok();
+        done
     }
 
     fn begin_session(&mut self) {
