@@ -168,7 +168,12 @@ impl Way {
         while self.late.front().is_some_and(|(due, _)| *due <= now) {
             // A zero, since it may come within another frame's bytes on a real line.
             arrives.push(0);
-            arrives.extend(self.late.pop_front().into_iter().flat_map(|(_, frame)| frame));
+            arrives.extend(
+                self.late
+                    .pop_front()
+                    .into_iter()
+                    .flat_map(|(_, frame)| frame),
+            );
         }
         arrives
     }

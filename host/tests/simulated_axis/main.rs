@@ -3,3 +3,5 @@
 mod instruments;
 mod session;
 mod troubles;
+#[path = "../support/tuned.rs"]
+mod tuned;
