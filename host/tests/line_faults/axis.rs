@@ -57,12 +57,9 @@ fn options() -> Options {
 pub fn run(faults: Faults, seed: u64) -> Run {
     let (flash, counts_per_mm) = image();
     let mut axis = SimulatedAxis::new(Base::Full, 1000.0, 1, flash).unwrap();
-    let seen = Rc::new(RefCell::new(Watch {
-        counts_per_mm,
-        ..Watch::default()
-    }));
+    let seen = Rc::new(RefCell::new(Watch::new(counts_per_mm)));
     let watch = Rc::clone(&seen);
-    axis.watch(move |record, is_heard| watch.borrow_mut().tick(record, is_heard));
+    axis.watch(move |record, bytes| watch.borrow_mut().tick(record, bytes));
     let noisy = Noisy::new(axis, faults, seed);
     let done: Rc<Cell<Done>> = noisy.done();
     let mut tool = Axis::open(noisy, options()).unwrap();

@@ -60,6 +60,14 @@ fn lines() -> Vec<(&'static str, Faults)> {
         ("20 % late by 120 ms", late(120)),
         ("cut for 0.5 s every 3 s", cuts),
         (
+            "cut for 1.5 s every 4 s",
+            Faults {
+                cut: MS(1500),
+                cut_every: MS(4000),
+                ..NONE
+            },
+        ),
+        (
             "5 % dropped, 5 % flipped, 20 % doubled, 20 % late by 120 ms, cuts",
             Faults {
                 drops: 0.05,
@@ -135,6 +143,10 @@ fn no_fault_of_the_line_moves_the_axis_otherwise_than_it_was_told() {
     assert!(
         of("cut for 0.5 s every 3 s").seen.stops > 0,
         "it was cut at rest"
+    );
+    assert!(
+        of("cut for 1.5 s every 4 s").lost > 0,
+        "no session has ended"
     );
     let text = table(&rows);
     reviewed(GOLDEN, |_| text.clone());

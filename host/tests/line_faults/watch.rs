@@ -10,7 +10,7 @@ const MS_PER_TICK: u32 = 1;
 /// What was seen.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watch {
-    pub counts_per_mm: f64,
+    counts_per_mm: f64,
     /// Where it was sent, mm.
     pub target_mm: f64,
     /// Where it stood last, mm.
@@ -38,9 +38,17 @@ struct Stop {
 }
 
 impl Watch {
-    /// A tick, in which bytes came or not.
-    pub fn tick(&mut self, record: &Record, is_heard: bool) {
-        if is_heard {
+    /// Nothing seen yet.
+    pub fn new(counts_per_mm: f64) -> Self {
+        Self {
+            counts_per_mm,
+            ..Self::default()
+        }
+    }
+
+    /// A tick, and the bytes that came in it. A zero alone is what the line has left of a frame.
+    pub fn tick(&mut self, record: &Record, bytes: &[u8]) {
+        if bytes.iter().any(|byte| *byte != 0) {
             self.heard = record.tick;
         }
         let is = |state: State| record.state() == state as u8;
