@@ -78,6 +78,10 @@ fn golden_tables() -> Result<()> {
         .words(&["--test", "scenarios", "documents"])
         .env("INSTA_UPDATE", "always")
         .run()?;
+    command::cargo(["test", "--package", "leadscrew-host"])
+        .words(&["--test", "line_faults"])
+        .env("INSTA_UPDATE", "always")
+        .run()?;
     command::cargo(["test", "--package", "leadscrew-app"])
         .words(&["--test", "modbus", "page"])
         .env("INSTA_UPDATE", "always")

@@ -68,6 +68,9 @@ const LONG_RINGS: &[Ring] = &[
     },
 ];
 
+/// Tests of the host package that need QEMU, all of them marked `#[ignore]`.
+const IN_QEMU: &str = "axis_in_qemu";
+
 /// What a ring came to.
 struct Outcome {
     tests: Option<Tests>,
@@ -231,7 +234,24 @@ impl Runner {
     }
 
     fn qemu(&self) -> Outcome {
-        tests(self.call(Choice::Qemu))
+        self.in_qemu(|call| call)
+    }
+
+    /// Those of the harness, and those of the command; one call of nextest has both.
+    fn in_qemu(&self, prepare: impl Fn(Call) -> Call) -> Outcome {
+        let harness = tests(prepare(self.call(Choice::Qemu)));
+        if self.nextest {
+            return harness;
+        }
+        let call = cargo(["test", "--no-fail-fast", "--package", "leadscrew-host"]);
+        let call = call.words(&["--test", IN_QEMU, "--", "--ignored"]);
+        let command = tests(prepare(call));
+        let mut sum = harness.tests.unwrap_or_default();
+        sum += command.tests.unwrap_or_default();
+        Outcome {
+            tests: Some(sum),
+            result: harness.result.and(command.result),
+        }
     }
 
     fn long_host(&self) -> Outcome {
@@ -239,13 +259,13 @@ impl Runner {
     }
 
     fn long_qemu(&self) -> Outcome {
-        tests(self.call(Choice::Qemu).env(LONG, "1"))
+        self.in_qemu(|call| call.env(LONG, "1"))
     }
 
     fn call(&self, choice: Choice) -> Call {
         if self.nextest {
             let call = cargo(["nextest", "run", "--no-fail-fast", "--no-tests", "pass"]);
-            let of_qemu = format!("package({QEMU})");
+            let of_qemu = format!("(package({QEMU}) or binary({IN_QEMU}))");
             let filter = match choice {
                 Choice::Plain => return call.packages(HOST),
                 Choice::Qemu => of_qemu,

@@ -126,6 +126,10 @@ impl Way {
                 continue;
             }
             let mut frame = std::mem::take(&mut self.partial);
+            if faults.is_cut(now) {
+                done.cut += u32::from(frame.len() > 1);
+                continue;
+            }
             if frame.len() == 1 {
                 // The zero before a frame: it bounds what the faults have left.
                 arrives.extend(frame);
@@ -141,10 +145,6 @@ impl Way {
                 is(faults.delays),
             ];
             done.frames += 1;
-            if faults.is_cut(now) {
-                done.cut += 1;
-                continue;
-            }
             done.dropped += u32::from(drops);
             done.flipped += u32::from(flips);
             done.doubled += u32::from(doubles);

@@ -89,8 +89,8 @@ pub struct SimulatedAxis {
     watch: Option<Box<Watch>>,
 }
 
-/// Looks at every tick: what it put out, and whether it came with bytes from the tool.
-type Watch = dyn FnMut(&Record, bool);
+/// Looks at every tick: what it put out, and the bytes that came from the tool.
+type Watch = dyn FnMut(&Record, &[u8]);
 
 impl SimulatedAxis {
     /// Switches the workshop's machine on: what it is made of, its control rate unless its store says otherwise, and what
@@ -141,8 +141,8 @@ impl SimulatedAxis {
         &self.firmware.put_out
     }
 
-    /// Lets `watch` look at every tick from now on: what it put out, and whether bytes came to the axis in it.
-    pub fn watch(&mut self, watch: impl FnMut(&Record, bool) + 'static) {
+    /// Lets `watch` look at every tick from now on: what it put out, and the bytes that came to the axis in it.
+    pub fn watch(&mut self, watch: impl FnMut(&Record, &[u8]) + 'static) {
         self.watch = Some(Box::new(watch));
     }
 
@@ -185,7 +185,7 @@ impl SimulatedAxis {
             has_room
         });
         if let Some(watch) = &mut self.watch {
-            watch(&self.firmware.put_out, !bytes.is_empty());
+            watch(&self.firmware.put_out, &bytes);
         }
     }
 
