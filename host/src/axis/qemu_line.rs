@@ -11,6 +11,10 @@ const TICKS_OF_EXCHANGE: u16 = 5;
 /// Control rate by which the clock of the line goes, whatever the axis's is, Hz.
 const TICK_HZ: f64 = 1000.0;
 
+/// An instruction takes 2^3 = 8 ns, as on a real Cortex-M4F: at 16 ns the guest, which simulates its machine too, has
+/// no time to learn an encoder beside it.
+const SHIFT: u32 = 3;
+
 /// The image that runs an axis on its link.
 pub const IMAGE: (&str, &str) = ("linked", "firmware");
 
@@ -29,7 +33,7 @@ impl QemuLine {
     /// QEMU or the target is not there, the image does not build, or the guest does not come up.
     pub fn start(prepare: impl FnOnce(Start) -> Start) -> Result<Self, Error> {
         let (bin, profile) = IMAGE;
-        let start = prepare(Start::new(build(bin, profile)?)).lockstep();
+        let start = prepare(Start::new(build(bin, profile)?).shift(SHIFT)).lockstep();
         let mut guest = start.start()?;
         let lockstep = guest.take_lockstep().ok_or(Error::NoExecutable {
             bin: bin.to_owned(),

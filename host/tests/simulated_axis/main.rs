@@ -6,7 +6,7 @@ mod monitor;
 mod recordings;
 mod replays;
 mod session;
-#[path = "../support/tuned.rs"]
 mod support;
 mod troubles;
+#[path = "../support/tuned.rs"]
 mod tuned;
