@@ -22,6 +22,9 @@ fn a_blank_axis_is_commissioned_and_stays_so() {
     let folder = tempfile::tempdir().unwrap();
     let flash = folder.path().join("flash");
     leadscrew(&flash, &["setup", "--yes"]);
+    // Its home switch is at the low end.
+    let low = "homing.search_direction=-1";
+    leadscrew(&flash, &["params", "set", "--save", low]);
     let set = leadscrew(&flash, &["params", "diff"]);
     for name in [
         "controller.position_gain_per_s",
@@ -31,7 +34,11 @@ fn a_blank_axis_is_commissioned_and_stays_so() {
     }
     // It moves, and is where it was sent.
     let script = folder.path().join("script");
-    std::fs::write(&script, "enable\nmove 100 feed 9000\nmove 0 feed 9000\n").unwrap();
+    std::fs::write(
+        &script,
+        "enable\nhome\nmove 100 feed 9000\nmove 0 feed 9000\n",
+    )
+    .unwrap();
     leadscrew(&flash, &["run", &script.display().to_string()]);
     assert_eq!(leadscrew(&flash, &["params", "diff"]), set);
 }
