@@ -39,7 +39,12 @@ pub struct Queues {
     samples: Queue<Sample, SAMPLES>,
     captures: Queue<u32, WORDS>,
     refused: AtomicU32,
+    /// The tick whose report thread mode took last; [`NO_BEAT`] before the first one.
+    beat: AtomicU32,
 }
+
+/// Thread mode has taken no report yet: it has no link, or has not begun.
+const NO_BEAT: u32 = u32::MAX;
 
 /// What the tick holds of them.
 pub struct TickEnds {
@@ -51,6 +56,7 @@ pub struct TickEnds {
     pub(crate) scopes_back: Producer<'static, Scope<'static>>,
     pub(crate) samples: Producer<'static, Sample>,
     refused: &'static AtomicU32,
+    beat: &'static AtomicU32,
 }
 
 /// What thread mode holds of them.
@@ -71,6 +77,7 @@ pub struct LinkEnds {
     pub samples: Consumer<'static, Sample>,
     /// Refusals whose outcome nobody fetched.
     pub refused: &'static AtomicU32,
+    beat: &'static AtomicU32,
 }
 
 impl Default for Queues {
@@ -93,6 +100,7 @@ impl Queues {
             samples: Queue::new(),
             captures: Queue::new(),
             refused: AtomicU32::new(0),
+            beat: AtomicU32::new(NO_BEAT),
         }
     }
 
@@ -115,6 +123,7 @@ impl Queues {
             scopes_back: give_back,
             samples: sample,
             refused: &self.refused,
+            beat: &self.beat,
         };
         let link = LinkEnds {
             requests: ask,
@@ -125,13 +134,30 @@ impl Queues {
             scopes_back,
             samples,
             refused: &self.refused,
+            beat: &self.beat,
         };
         let (capture, captures) = (CaptureSender::new(capture), CaptureReceiver::new(captures));
         (tick, capture, link, captures)
     }
 }
 
+impl LinkEnds {
+    /// Tells the tick that thread mode lives: it has taken the report of `tick`.
+    pub fn beat(&self, tick: u32) {
+        // One tick in 2³² is told late.
+        self.beat.store(tick.min(NO_BEAT - 1), Ordering::Relaxed);
+    }
+}
+
 impl TickEnds {
+    /// How many ticks thread mode is behind; 0 if there is nobody who could be.
+    pub(crate) fn behind(&self, tick: u32) -> u32 {
+        match self.beat.load(Ordering::Relaxed) {
+            NO_BEAT => 0,
+            beat => tick.wrapping_sub(beat),
+        }
+    }
+
     /// Counts a refusal whose outcome found no room.
     pub(crate) fn note_lost_outcome(&self, result: Result<(), Refusal>) {
         let refused = self.refused.load(Ordering::Relaxed);

@@ -271,7 +271,7 @@ messages! {
         }
         /// How the learning stands.
         Learning = 15 {
-            /// 0 none, 1 between runs, 2 waits for the index, 3 measures the speed, 4 averages, 5 the run is complete, 6 a map is
+            /// 0 none, 1 between runs, 2 waits for the index, 3 measures the speed, 4 averages, 5 the run is complete and to be ended, 6 a map is
             /// there.
             phase: u8,
             /// Whole revolutions in the average.

@@ -233,6 +233,7 @@ messages! {
             edges: u32,
         }
         /// Begins a run of the learning: the axis is to feed steadily from now on until it is complete.
+        /// Then it is to stand, and the run to be ended.
         LearnRun = 47 {
             /// Revolutions to average over.
             revolutions: u32,
@@ -254,6 +255,8 @@ messages! {
         }
         /// Saves the map that was taken into use, while the axis is off.
         SaveMap = 54 {}
+        /// Ends a run of the learning that is complete and adds it to those before, while the axis stands: it may take a second.
+        EndRun = 55 {}
     }
 }
 
@@ -289,6 +292,7 @@ impl Request<'_> {
                 | Self::SaveBytes { .. }
                 | Self::Erase { .. }
                 | Self::FinishLearning { .. }
+                | Self::EndRun { .. }
                 | Self::TakeMap { .. }
                 | Self::SaveMap { .. }
         )

@@ -17,6 +17,9 @@ use crate::report::{Indexes, Report};
 use crate::store::Interlock;
 use crate::tick::Control;
 
+/// Longest that thread mode may be behind while the axis moves, s: twice what a lease lasts.
+const PATIENCE_S: f64 = 0.2;
+
 /// What the axis sees of its board.
 pub trait Inlet {
     /// Inputs of the tick, with enable asked for or not.
@@ -39,6 +42,8 @@ pub struct AxisControl<B> {
     scope: Option<Scope<'static>>,
     stream: Option<Stream>,
     enable: bool,
+    /// Ticks that thread mode may be behind while the axis moves.
+    patience: u32,
     indexes: Indexes,
     /// Raw count at the last index.
     index_count: u32,
@@ -53,13 +58,14 @@ pub struct AxisControl<B> {
 
 impl<B> AxisControl<B> {
     /// `interlock` keeps the axis off while the store is written.
-    pub const fn new(
+    pub fn new(
         axis: Axis<'static>,
         ends: TickEnds,
         captures: CaptureSender,
         interlock: &'static Interlock,
     ) -> Self {
         Self {
+            patience: (axis.config().scale.tick_hz() * PATIENCE_S) as u32,
             axis,
             ends,
             captures,
@@ -67,11 +73,7 @@ impl<B> AxisControl<B> {
             scope: None,
             stream: None,
             enable: false,
-            indexes: Indexes {
-                number: 0,
-                count: 0,
-                distance: 0,
-            },
+            indexes: Indexes::default(),
             index_count: 0,
             told_fault: None,
             tick: 0,
@@ -88,6 +90,10 @@ impl<B: Inlet> Control for AxisControl<B> {
     fn step(&mut self, board: &B) -> Report {
         self.take_requests();
         self.tick = self.tick.wrapping_add(1);
+        // Whose lease nobody looks after does not move on.
+        if self.axis.outputs().moving && self.ends.behind(self.tick) > self.patience {
+            self.enable = false;
+        }
         let enable = self.enable && self.interlock.try_enable();
         let mut inputs = board.inputs(enable);
         inputs.missed_ticks = inputs.missed_ticks.saturating_add(self.missed);
@@ -127,8 +133,10 @@ mod tests {
     use leadscrew::hal::Capture;
     use leadscrew::params::AxisParams;
     use leadscrew::protocol::refusal::Refusal;
+    use leadscrew::setpoint::planner::{Planner, Timed};
     use leadscrew::supervisor::SupervisorParams;
     use leadscrew::tuning::DriveModel;
+    use leadscrew::units::Position;
     use std::boxed::Box;
 
     use super::*;
@@ -226,5 +234,38 @@ mod tests {
         assert!(link.requests.enqueue(off).is_ok());
         (0..3000).for_each(|_| _ = control.step(&Standing(0)));
         assert!(control.interlock.permit(&outputs).is_ok());
+    }
+
+    #[test]
+    fn a_moving_axis_stops_when_thread_mode_falls_silent() {
+        let (mut control, mut link) = control();
+        assert!(link.requests.enqueue(ENABLE).is_ok());
+        let stands = (0..100).map(|_| control.step(&Standing(0))).last();
+        let seen = stands.unwrap().seen;
+        let mut planner = Planner::new(control.axis.config().limits, seen.commanded, seen.tick);
+        let target = Position::from_num(500_000);
+        let feed = control.axis.config().limits.velocity();
+        let planned = planner.move_to(target, feed, seen.tick + 2).unwrap();
+        let Some(Timed { plan, start }) = planned else {
+            panic!("there is a way to go")
+        };
+        let queue = Request::now(What::Axis(axis::Request::Queue { plan, start }));
+        assert!(link.requests.enqueue(queue).is_ok());
+        let moves =
+            |control: &mut AxisControl<Standing>, link: &LinkEnds, beats: bool, ticks: u32| {
+                for _ in 0..ticks {
+                    let report = control.step(&Standing(0));
+                    if beats {
+                        link.beat(report.seen.tick);
+                    }
+                }
+                (control.axis.outputs().moving, control.enable)
+            };
+        // Without anybody who could fall silent it goes on; with somebody who does not, too.
+        assert_eq!(moves(&mut control, &link, false, 300), (true, true));
+        assert_eq!(moves(&mut control, &link, true, 300), (true, true));
+        assert_eq!(moves(&mut control, &link, false, 199), (true, true));
+        let (_, enable) = moves(&mut control, &link, false, 3);
+        assert!(!enable);
     }
 }

@@ -168,6 +168,7 @@ impl<F: NorFlash> Port for Bench<F> {
             Request::Stream { every, signals } => self.begin_stream(every, signals)?,
             Request::Learn { edges } => self.begin_learning(edges)?,
             Request::LearnRun { revolutions } => self.begin_run(revolutions)?,
+            Request::EndRun {} => self.end_run()?,
             Request::Learning {} => say(&self.learning_reply()),
             Request::FinishLearning {} => self.finish_learning()?,
             Request::Learned {} => say(&self.learned()?),

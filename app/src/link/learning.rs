@@ -19,8 +19,6 @@ use crate::axis_control::What;
 pub(super) struct Learning {
     last: Option<RunSummary>,
     refusal: Option<LearnRefusal>,
-    /// The last run is complete.
-    is_complete: bool,
     learned: Option<Learned>,
 }
 
@@ -53,7 +51,6 @@ impl<F: NorFlash> Bench<F> {
         };
         self.learning.last = None;
         self.learning.refusal = None;
-        self.learning.is_complete = false;
         Ok(())
     }
 
@@ -62,7 +59,6 @@ impl<F: NorFlash> Bench<F> {
             return Err(Refusal::NotLearning);
         };
         self.learning.refusal = None;
-        self.learning.is_complete = false;
         if let Err(refusal) = learner.begin_run(RunPlan::steady(revolutions)) {
             self.learning.refusal = Some(refusal);
             return Err(Refusal::LearningRefused);
@@ -78,7 +74,7 @@ impl<F: NorFlash> Bench<F> {
         let Lent::Learner(learner) = &mut self.lent else {
             return;
         };
-        if learner.progress().is_none() {
+        if matches!(learner.progress(), None | Some(Progress::Complete)) {
             return;
         }
         let (unwrapper, learning) = (&mut self.unwrapper, &mut self.learning);
@@ -89,16 +85,8 @@ impl<F: NorFlash> Bench<F> {
                 .next(|capture| learner.feed(&unwrapper.unwrap(capture)));
             match fed {
                 None => return,
-                Some(Ok(Progress::Complete)) => {
-                    is_over = true;
-                    match learner.end_run() {
-                        Ok(summary) => {
-                            learning.last = Some(summary);
-                            learning.is_complete = true;
-                        }
-                        Err(refusal) => learning.refusal = Some(refusal),
-                    }
-                }
+                // It is ended when the axis stands: that takes long, and nobody looks after the lease meanwhile.
+                Some(Ok(Progress::Complete)) => is_over = true,
                 Some(Ok(_)) => {}
                 Some(Err(refusal)) => {
                     is_over = true;
@@ -110,6 +98,23 @@ impl<F: NorFlash> Bench<F> {
         let _ = self.tell(What::Captures(false));
     }
 
+    /// Adds the run that is complete to those before.
+    pub fn end_run(&mut self) -> Result<(), Refusal> {
+        let Lent::Learner(learner) = &mut self.lent else {
+            return Err(Refusal::NotLearning);
+        };
+        match learner.end_run() {
+            Ok(summary) => {
+                self.learning.last = Some(summary);
+                Ok(())
+            }
+            Err(refusal) => {
+                self.learning.refusal = Some(refusal);
+                Err(Refusal::LearningRefused)
+            }
+        }
+    }
+
     pub fn learning_reply(&self) -> Reply<'static> {
         let learning = &self.learning;
         let mut revolutions = 0;
@@ -118,7 +123,6 @@ impl<F: NorFlash> Bench<F> {
         if let Lent::Learner(learner) = &self.lent {
             runs = learner.runs() as u8;
             phase = match learner.progress() {
-                None if learning.is_complete => 5,
                 None => 1,
                 Some(Progress::SeekingIndex) => 2,
                 Some(Progress::MeasuringSpeed) => 3,

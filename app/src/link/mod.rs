@@ -52,6 +52,7 @@ impl<F: NorFlash> Link<F> {
             return;
         }
         bench.take(report);
+        bench.ends.beat(report.seen.tick);
         if let Some(frame) = service.record(&report.record)
             && !send(frame)
         {

@@ -103,6 +103,15 @@ impl Axis {
         self.order(&Request::LearnRun { revolutions })
     }
 
+    /// Ends a run that is complete, while the axis stands, and tells what it showed.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] of a run that does not go with those before; [`Self::learning`] has the reason.
+    pub fn end_learn_run(&mut self) -> Result<LearningStatus, Error> {
+        self.order(&Request::EndRun {})?;
+        self.learning()
+    }
+
     /// How the learning stands.
     ///
     /// # Errors

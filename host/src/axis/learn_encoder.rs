@@ -327,6 +327,8 @@ fn run(
     }
     tell(feeds.revolutions);
     axis.wait_for_rest()?;
+    let ended = axis.end_learn_run();
+    reasoned(axis, ended)?;
     Ok(())
 }
 

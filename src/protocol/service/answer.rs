@@ -185,6 +185,7 @@ impl Inner {
                 Self::check_off(seen)?;
                 self.serve(request, port)
             }
+            Request::EndRun {} if self.may_move(seen) => Err(Refusal::StillMoving),
             _ => match Motion::of(request) {
                 Some(motion) => self.move_by(motion, seen, port),
                 None => self.serve(request, port),
@@ -212,7 +213,7 @@ impl Inner {
     }
 
     /// True while a motion is under way, or may begin without another request.
-    const fn may_move(&self, seen: &Seen) -> bool {
+    pub(super) const fn may_move(&self, seen: &Seen) -> bool {
         let in_control = matches!(seen.state, State::Ready | State::Moving);
         seen.moving || self.mover.is_to_start() || in_control && !seen.is_planned
     }

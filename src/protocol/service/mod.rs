@@ -41,6 +41,9 @@ pub struct Identity {
     pub lead_ticks: u32,
 }
 
+/// Leases for which a tool is waited for after a request that takes long: 10 s.
+const PATIENCE: u32 = 100;
+
 /// What came of a request that does something: for when it comes again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
@@ -75,8 +78,9 @@ struct Inner {
     last_done: Done,
     /// The lease has lapsed, and the axis does not know yet.
     must_disable: bool,
-    /// The axis itself took its time for a request, while it was off: the lease lasts until the next one comes.
-    was_busy: bool,
+    /// Tick of a request for which the axis itself took its time, while it stood: the lease lasts until the next one comes,
+    /// or [`PATIENCE`] leases long.
+    busy_since: Option<u32>,
     /// A record in so many ticks; 0 for none.
     every: u16,
     until_record: u16,
@@ -112,7 +116,7 @@ impl Service {
                 mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
                 last_done: Done::Nothing,
                 must_disable: false,
-                was_busy: false,
+                busy_since: None,
                 every: 0,
                 until_record: 0,
                 next_record: 0,
@@ -234,7 +238,10 @@ impl Service {
 impl Inner {
     fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.mover.look(seen, port);
-        self.must_disable |= !self.was_busy && self.lease.has_lapsed(seen.tick);
+        let patience = self.lease.ticks().saturating_mul(PATIENCE);
+        let is_excused = (self.busy_since)
+            .is_some_and(|since| seen.tick.wrapping_sub(since) < patience && !self.may_move(seen));
+        self.must_disable |= !is_excused && self.lease.has_lapsed(seen.tick);
         // Asked again until there is a way on.
         if self.must_disable && port.order(&Order::Enable(false)).is_ok() {
             self.must_disable = false;
@@ -244,7 +251,7 @@ impl Inner {
     /// Takes a frame; the answer, if it has one, is left in the buffer.
     fn take(&mut self, frame: &Frame<'_>, dropped: &mut Dropped, seen: &Seen, port: &mut dyn Port) {
         self.buffer.clear();
-        if core::mem::take(&mut self.was_busy) {
+        if self.busy_since.take().is_some() {
             self.lease.prolong(seen.tick);
         }
         let Header {
@@ -319,7 +326,8 @@ impl Inner {
         port: &mut dyn Port,
     ) -> Result<Passed, Refusal> {
         let done = self.carry_out(request, seen, port);
-        self.was_busy = request.takes_long() && Self::check_off(seen).is_ok();
+        let is_excused = request.takes_long() && !self.may_move(seen);
+        self.busy_since = is_excused.then_some(seen.tick);
         done
     }
 
