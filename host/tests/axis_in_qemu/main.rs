@@ -1,6 +1,7 @@
 //! The real command against the real firmware in QEMU, over lines that real boards have. Time here is the wall's, and the
 //! computer may be busy: what is asserted is what the axis does and refuses, never how soon.
 
+mod commissioning;
 mod lines;
 mod modbus;
 
