@@ -183,7 +183,7 @@ impl<'c> Rig<'c> {
         let reported = counter
             .count(|| link.report(report, &mut |frame| sent.extend_from_slice(frame).is_ok()));
         let polled = counter.count_long(&TIMER0, || {
-            link.poll(&mut |frame| sent.extend_from_slice(frame).is_ok())
+            link.poll(&mut |frame| sent.extend_from_slice(frame).is_ok());
         });
         let mut is_answered = false;
         client.receive(sent, |answer| {
