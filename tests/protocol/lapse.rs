@@ -154,3 +154,28 @@ fn a_tool_loses_no_lease_while_the_axis_is_off_and_takes_its_time_for_settings()
     rig.run(101);
     rig.refused(&Request::DropParameters {}, Refusal::LeaseRequired);
 }
+
+#[test]
+fn time_that_the_service_did_not_look_at_counts_in_motion_only() {
+    let mut rig = Rig::new();
+    rig.ready();
+    rig.renew_every = None;
+    rig.is_busy = true;
+    rig.run(1660);
+    rig.is_busy = false;
+    assert_eq!(rig.run(50).state, State::Ready);
+    rig.run(60);
+    assert_ne!(
+        rig.way.axis.outputs().state,
+        State::Ready,
+        "from then on it counts"
+    );
+
+    let mut rig = at_speed();
+    rig.renew_every = None;
+    rig.is_busy = true;
+    rig.run(101);
+    rig.is_busy = false;
+    rig.run(3);
+    assert_eq!(rig.way.axis.outputs().state, State::Stopping);
+}

@@ -128,6 +128,8 @@ pub struct Rig {
     /// The tool renews its lease, so many ticks after the last time.
     pub renew_every: Option<u32>,
     next_nonce: u32,
+    /// The service has no time: the axis goes on without it.
+    pub is_busy: bool,
 }
 
 impl Rig {
@@ -157,6 +159,7 @@ impl Rig {
             told_tick: 0,
             renew_every: None,
             next_nonce: 1,
+            is_busy: false,
         }
     }
 
@@ -165,6 +168,9 @@ impl Rig {
         self.board.step(self.way.axis.outputs());
         let inputs = self.board.inputs(self.way.enable, Reference::default());
         let outputs = *self.way.axis.step(&inputs);
+        if self.is_busy {
+            return outputs;
+        }
         let seen = Seen::of(&self.way.axis);
         if self
             .renew_every

@@ -6,7 +6,7 @@
 //! bytes ◄───────── reply ◄──────────────┴──► parameters, save ◄────────┘
 //! ```
 //!
-//! [`line`] finds frames in whatever comes, [`registers`] and [`bits`] are the tables of what can be read, [`map`]
+//! [`mod@line`] finds frames in whatever comes, [`registers`] and [`bits`] are the tables of what can be read, [`map`]
 //! says what is at which address, [`Panel`] is what the axis gives. `docs/modbus.md` is the page for people; its
 //! tables are made from here.
 //!

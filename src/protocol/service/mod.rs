@@ -81,6 +81,8 @@ struct Inner {
     /// Tick of a request for which the axis itself took its time, while it stood: the lease lasts until the next one comes,
     /// or [`PATIENCE`] leases long.
     busy_since: Option<u32>,
+    /// The tick that was looked at last.
+    looked_at: Option<u32>,
     /// A record in so many ticks; 0 for none.
     every: u16,
     until_record: u16,
@@ -117,6 +119,7 @@ impl Service {
                 last_done: Done::Nothing,
                 must_disable: false,
                 busy_since: None,
+                looked_at: None,
                 every: 0,
                 until_record: 0,
                 next_record: 0,
@@ -238,6 +241,14 @@ impl Service {
 impl Inner {
     fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.mover.look(seen, port);
+        // What the axis did not look at while it computed is no time in which its tool was silent. In motion it counts.
+        let step = self
+            .looked_at
+            .map_or(0, |tick| seen.tick.wrapping_sub(tick));
+        self.looked_at = Some(seen.tick);
+        if step > 1 && !self.may_move(seen) {
+            self.lease.prolong(seen.tick);
+        }
         let patience = self.lease.ticks().saturating_mul(PATIENCE);
         let is_excused = (self.busy_since)
             .is_some_and(|since| seen.tick.wrapping_sub(since) < patience && !self.may_move(seen));

@@ -153,7 +153,11 @@ mod tests {
         for point in points(&chirp, 1000.0, &input, &output) {
             assert!((point.gain - 0.5).abs() < 1e-3, "{point:?}");
             let expected = -360.0 * point.hz * 0.003;
-            assert!((point.phase_deg - expected).abs() < 1.0, "{point:?}");
+            // At the ends of the chirp half of what is averaged over is not excited: such a point is that of a frequency
+            // a few Hz further in.
+            let is_inner = point.hz > 2.5 && point.hz < 99.0;
+            let allowed = if is_inner { 1.0 } else { 5.0 };
+            assert!((point.phase_deg - expected).abs() < allowed, "{point:?}");
             assert!(point.coherence > 0.99, "{point:?}");
         }
     }

@@ -119,7 +119,7 @@ pub enum OnAxis<'a> {
 /// Runs such a command on the axis.
 ///
 /// # Errors
-/// As of [`run`].
+/// As of [`fn@run`].
 pub fn run_on_axis(port: &PortArgs, command: OnAxis<'_>) -> Result<(), CommandError> {
     let interrupted = interrupt::flag()?;
     let mut axis = open(port, &interrupted)?;
