@@ -10,6 +10,8 @@ use crate::units::{AxisScale, Position, Velocity};
 
 /// Farthest target, nm.
 const MAX_TARGET_NM: i64 = 1_000_000_000_000;
+/// How many times the lead a plan has after one that came too late.
+const LATE_STRETCH: u32 = 4;
 const NM_PER_MM: f64 = 1e6;
 const UM_PER_MM: f64 = 1e3;
 
@@ -58,6 +60,8 @@ pub(super) struct Mover {
     fastest_um: f64,
     /// Ticks from an order to the start of its plan.
     lead: u32,
+    /// The last plan came too late: the next one, which is likely to be the same again, has more time.
+    was_late: bool,
     planner: Planner,
     percent: u16,
     /// Something else than the planner's plans moved the axis.
@@ -76,6 +80,7 @@ impl Mover {
             scale: config.scale,
             fastest_um: max_feed_mm_per_min * UM_PER_MM,
             lead,
+            was_late: false,
             planner: Planner::new(config.limits, Position::ZERO, 0),
             percent: 100,
             is_stale: true,
@@ -155,7 +160,8 @@ impl Mover {
             return Ok(Passed::Taken);
         }
         self.catch_up(seen)?;
-        let start = seen.tick.wrapping_add(self.lead);
+        let stretch = if self.was_late { LATE_STRETCH } else { 1 };
+        let start = seen.tick.wrapping_add(self.lead.saturating_mul(stretch));
         let Some(Timed { plan, start }) = self.plan(motion, seen, start)? else {
             return Ok(Passed::Taken);
         };
@@ -175,6 +181,7 @@ impl Mover {
     pub(super) fn settle(&mut self, ticket: Ticket, outcome: Result<(), Refusal>) {
         if self.on_its_way == Some(ticket) {
             self.on_its_way = None;
+            self.was_late = outcome == Err(Refusal::TooLate);
             if outcome.is_err() {
                 self.planner.withdraw();
                 self.start = None;

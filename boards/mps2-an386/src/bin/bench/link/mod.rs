@@ -3,7 +3,7 @@
 //! `tick` is that of an axis of which nothing is asked; `tick_scope` with eight signals on the scope and eight streamed;
 //! `tick_captures` with eight streamed and every edge handed to the learner. A request is counted from its first byte
 //! to its reply; a `move` at rest, and a `replan` on the way, to the plan in the queue to the tick, and `settle` is its
-//! reply. `learn_end` is the look at the learner: its worst is the end of a run.
+//! reply. `learn_end` is the look at the learner: its worst is the last edges of a run.
 
 mod rig;
 
