@@ -328,7 +328,7 @@ impl Inner {
         self.answer(header, &Self::reply(seen, outcome));
     }
 
-    /// Carries it out. What takes long on an axis that is off costs its tool no lease: nothing can move before another
+    /// Carries it out. What takes long on an axis that stands costs its tool no lease: nothing can move before another
     /// request comes.
     fn worked(
         &mut self,

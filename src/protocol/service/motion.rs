@@ -11,7 +11,7 @@ use crate::units::{AxisScale, Position, Velocity};
 /// Farthest target, nm.
 const MAX_TARGET_NM: i64 = 1_000_000_000_000;
 /// How many times the lead a plan has after one that came too late.
-const LATE_STRETCH: u32 = 4;
+const LATE_STRETCH: u32 = 8;
 const NM_PER_MM: f64 = 1e6;
 const UM_PER_MM: f64 = 1e3;
 

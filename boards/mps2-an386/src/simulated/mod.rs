@@ -23,7 +23,7 @@ use leadscrew_app::axis_control::AxisControl;
 use leadscrew_app::report::Report;
 use leadscrew_app::store::Interlock;
 use leadscrew_app::telemetry::Ready;
-use leadscrew_app::tick::{Counters, Runtime, TickTimer};
+use leadscrew_app::tick::{Counters, Counts, Runtime, TickTimer};
 use leadscrew_hal_mock::scenario::Fate;
 use static_cell::StaticCell;
 
@@ -123,6 +123,22 @@ pub fn wire(job: Job, period: u32, ticks: Option<u32>) -> Consumer<'static, Repo
         "interrupts are masked"
     );
     reports
+}
+
+/// Logs what the tick counted.
+pub fn log(counts: &Counts) {
+    defmt::info!(
+        "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
+        counts.ticks,
+        counts.late,
+        counts.overlong,
+        counts.lost_records
+    );
+    defmt::info!(
+        "worst start {=u32} clocks, worst end {=u32} clocks after due",
+        counts.worst_start,
+        counts.worst_end
+    );
 }
 
 /// Unmasks the lines of the simulated axis and those of `uarts`, which have to be open.

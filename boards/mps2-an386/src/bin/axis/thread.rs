@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use board_mps2_an386::simulated::{COUNTERS, MACHINE, READY};
+use board_mps2_an386::simulated::{COUNTERS, MACHINE, READY, log};
 use board_mps2_an386::{exit_failure, exit_success};
 use embassy_time::{Instant, Timer};
 use heapless::spsc::{Consumer, Producer};
@@ -63,18 +63,7 @@ pub async fn report(
     };
     trace.open();
     let counts = telemetry::run(&mut trace, &mut reports, &READY, &COUNTERS, plan).await;
-    defmt::info!(
-        "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
-        counts.ticks,
-        counts.late,
-        counts.overlong,
-        counts.lost_records
-    );
-    defmt::info!(
-        "worst start {=u32} clocks, worst end {=u32} clocks after due",
-        counts.worst_start,
-        counts.worst_end
-    );
+    log(&counts);
     let digest = MACHINE.with(|state| {
         state.account();
         state.digest()

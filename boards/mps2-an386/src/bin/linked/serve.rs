@@ -152,18 +152,7 @@ impl Server {
     /// Logs the counts and ends the program; in failure if a tick was late, overlong or not reported.
     fn end(&self) -> ! {
         let counts = COUNTERS.read();
-        defmt::info!(
-            "ticks {=u32} late {=u32} overlong {=u32} lost records {=u32}",
-            counts.ticks,
-            counts.late,
-            counts.overlong,
-            counts.lost_records
-        );
-        defmt::info!(
-            "worst start {=u32} clocks, worst end {=u32} clocks after due",
-            counts.worst_start,
-            counts.worst_end
-        );
+        simulated::log(&counts);
         if counts.is_clean() {
             exit_success();
         }

@@ -3,7 +3,7 @@
 //! `tick` is that of an axis of which nothing is asked; `tick_scope` with eight signals on the scope and eight streamed;
 //! `tick_captures` with eight streamed and every edge handed to the learner. A request is counted from its first byte
 //! to its reply; a `move` at rest, and a `replan` on the way, to the plan in the queue to the tick, and `settle` is its
-//! reply. `learn_end` is the look at the learner: its worst is the last edges of a run.
+//! reply. `learn_end` is the end of a run of the learner.
 
 mod rig;
 
@@ -81,9 +81,12 @@ fn instruments(rig: &mut Rig<'_>) {
     assert!(refused.is_none(), "the axis is ready");
     rig.ticks(500);
     rig.ask(Of::Other, &Request::LearnRun { revolutions: 12 });
-    rig.kinds = [Of::Other, Of::Other, Of::LearnEnd];
-    rig.ticks(5000);
-    rig.kinds = [Of::Other; 3];
+    rig.ticks(6500);
+    let refused = rig.ask(Of::LearnEnd, &Request::EndRun {});
+    assert!(
+        refused.is_none(),
+        "the run is complete, and the axis stands"
+    );
     rig.ask(Of::Other, &Request::EndLearning {});
     let signals = &[];
     rig.ask(Of::Other, &Request::Stream { every: 0, signals });
