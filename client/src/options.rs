@@ -12,6 +12,9 @@ pub struct Timing {
     pub repeat: Duration,
     /// An axis that has not answered for so long is lost.
     pub lost: Duration,
+    /// An axis that has not answered the first words of a session for so long is not there. Boards start anew when their
+    /// port is opened, and an emulator looks only once a second whether somebody has.
+    pub greeting: Duration,
     /// The control lease is renewed so often; it lasts 100 ms of axis time.
     pub renew: Duration,
     /// How long a request that is refused only for the moment is given again.
@@ -25,6 +28,7 @@ impl Default for Timing {
         Self {
             repeat: Duration::from_millis(20),
             lost: Duration::from_secs(1),
+            greeting: Duration::from_secs(3),
             renew: Duration::from_millis(20),
             patience: Duration::from_millis(200),
             settle: Duration::from_secs(10),

@@ -2,6 +2,7 @@
 
 mod axis;
 mod look;
+mod place;
 mod procedures;
 mod shared;
 

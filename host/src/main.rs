@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
@@ -12,7 +11,7 @@ use leadscrew_host::command::{
 };
 
 fn main() -> ExitCode {
-    let Cli { port, command } = Cli::parse();
+    let Cli { port, command } = Cli::read();
     let on_axis = |command| axis::run_on_axis(&port, command);
     let is_on_axis = port.port.is_some();
     let done = match command {

@@ -33,10 +33,8 @@ impl Tests {
 
 /// `test result: ok. 4 passed; 0 failed; 5 ignored; 0 measured; …`
 fn libtest(line: &str) -> Option<Tests> {
-    let (_, counts) = line
-        .trim()
-        .strip_prefix("test result: ")?
-        .split_once(". ")?;
+    // nextest shows what a failed test printed, this line too, but indented: it counts that test itself.
+    let (_, counts) = line.strip_prefix("test result: ")?.split_once(". ")?;
     Some(sum(counts, ';'))
 }
 
@@ -130,8 +128,7 @@ test result: FAILED. 3 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; 
 
     #[test]
     fn other_lines_count_nothing() {
-        let text =
-            "test a::passed ... ok\n5 passed\n        PASS [   0.004s] 3 passed\nSummary [x]\n";
+        let text = "test a::passed ... ok\n    test result: FAILED. 0 passed; 1 failed; 0 ignored;\n5 passed\n        PASS [   0.004s] 3 passed\nSummary [x]\n";
         assert_eq!(Tests::read(text), tests(0, 0));
     }
 }

@@ -186,6 +186,7 @@ impl Connection {
     const fn patience_for(&self, request: &Request<'_>) -> Duration {
         let lost = self.options.timing.lost;
         match request {
+            Request::Hello { .. } => self.options.timing.greeting,
             Request::SaveParameters {}
             | Request::SaveBytes { .. }
             | Request::Erase { .. }

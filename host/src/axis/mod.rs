@@ -33,7 +33,7 @@ pub use learn_encoder::{Feeds, LearnedEncoder, Ripple, forget_learning, keep_map
 pub use offset::{Drift, NulledOffset, null_offset};
 pub use open::{PortArgs, flash, machine, open, port, simulated};
 pub use procedure_error::ProcedureError;
-pub use qemu_line::IMAGE as QEMU_IMAGE;
+pub use qemu_line::{IMAGE as QEMU_IMAGE, QemuLine};
 pub use room::Room;
 pub use settings::{Change, Setting, apply, differences, read_settings};
 pub use tune::{Tuning, counts_on, followed_now, tune};

@@ -2,8 +2,13 @@
 //! computer may be busy: what is asserted is what the axis does and refuses, never how soon.
 
 mod commissioning;
+mod faults;
 mod lines;
 mod modbus;
+#[path = "../support/shuttle.rs"]
+mod shuttle;
+#[path = "../support/watch.rs"]
+mod watch;
 
 use std::process::{Command, Output, Stdio};
 

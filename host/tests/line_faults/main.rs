@@ -2,8 +2,11 @@
 //! `INSTA_UPDATE=always` writes it anew.
 
 mod axis;
+#[path = "../support/shuttle.rs"]
+mod shuttle;
 #[path = "../support/tuned.rs"]
 mod tuned;
+#[path = "../support/watch.rs"]
 mod watch;
 
 use std::fmt::Write as _;
@@ -12,37 +15,17 @@ use std::time::Duration;
 
 use leadscrew_client::noisy::Faults;
 
-use axis::{MOVES, Run, run};
+use axis::{MOVES, run};
+use shuttle::{NONE, Run, cuts, late, worst};
 
 const GOLDEN: &str = "../tests/golden/line_faults.txt";
 const PAGE: &str = "../docs/wire-format.md";
 const MARK: &str = "<!-- made: line faults -->\n";
 const END: &str = "<!-- end -->";
 
-const MS: fn(u64) -> Duration = Duration::from_millis;
-const NONE: Faults = Faults {
-    drops: 0.0,
-    flips: 0.0,
-    doubles: 0.0,
-    delays: 0.0,
-    delay: Duration::ZERO,
-    cut: Duration::ZERO,
-    cut_every: Duration::ZERO,
-};
-
 /// Lines, from good to worst.
 fn lines() -> Vec<(&'static str, Faults)> {
     let drops = |drops| Faults { drops, ..NONE };
-    let late = |delay| Faults {
-        delays: 0.2,
-        delay: MS(delay),
-        ..NONE
-    };
-    let cuts = Faults {
-        cut: MS(500),
-        cut_every: MS(3000),
-        ..NONE
-    };
     vec![
         ("good", NONE),
         ("1 % dropped", drops(0.01)),
@@ -58,27 +41,18 @@ fn lines() -> Vec<(&'static str, Faults)> {
         ),
         ("20 % late by 30 ms", late(30)),
         ("20 % late by 120 ms", late(120)),
-        ("cut for 0.5 s every 3 s", cuts),
+        ("cut for 0.5 s every 3 s", cuts()),
         (
             "cut for 1.5 s every 4 s",
             Faults {
-                cut: MS(1500),
-                cut_every: MS(4000),
+                cut: Duration::from_millis(1500),
+                cut_every: Duration::from_millis(4000),
                 ..NONE
             },
         ),
         (
             "5 % dropped, 5 % flipped, 20 % doubled, 20 % late by 120 ms, cuts",
-            Faults {
-                drops: 0.05,
-                flips: 0.05,
-                doubles: 0.2,
-                ..Faults {
-                    cut: cuts.cut,
-                    cut_every: cuts.cut_every,
-                    ..late(120)
-                }
-            },
+            worst(),
         ),
     ]
 }

@@ -29,7 +29,14 @@ fn an_axis_with_a_blank_flash_is_commissioned_and_keeps_it() {
     let flash = FlashImage::blank();
     let mut first = bench(&flash);
     let mut guide = Agreeing::default();
-    let outcome = set_up(&mut first, &mut guide, &[], &Steps::default()).unwrap();
+    let outcome = set_up(
+        &mut first,
+        &mut guide,
+        &[("home_switch", -1.0)],
+        &Steps::default(),
+    )
+    .unwrap();
+    assert!(outcome.homed_at_mm.unwrap().abs() < 0.1, "{outcome:?}");
     assert_eq!(outcome.counts_per_revolution, Some(10_000.0));
     // The machine's: 9 600 mm/min and −0.5 %.
     let feed = outcome.full_command_feed_mm_per_min.unwrap();
@@ -127,7 +134,7 @@ fn too_little_travel_is_told_with_what_it_takes_and_setup_goes_on_from_there() {
     // What was found until then is there: the session goes on with the encoder, by somebody who knows of more room.
     let on = Steps {
         from: Some(Step::Encoder),
-        skip: vec![Step::Offset],
+        skip: vec![Step::Offset, Step::Home],
     };
     let more = [("room_plus_mm", 300.0), ("room_minus_mm", 0.0)];
     let outcome = set_up(&mut bench, &mut guide, &more, &on).unwrap();

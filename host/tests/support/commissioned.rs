@@ -64,7 +64,8 @@ pub fn is_commissioned(port: &str) {
         port,
         folder: folder.path(),
     };
-    let few = ["--set", "revolutions=12"];
+    // Its home switch is at the low end.
+    let few = ["--set", "revolutions=12", "--set", "home_switch=-1"];
     workshop.leadscrew(&["setup", "--yes", "--skip", "encoder,offset"]);
     workshop.leadscrew(
         &[
@@ -73,8 +74,6 @@ pub fn is_commissioned(port: &str) {
         ]
         .concat(),
     );
-    // Its home switch is at the low end.
-    workshop.leadscrew(&["params", "set", "--save", "homing.search_direction=-1"]);
     let set = workshop.leadscrew(&["params", "diff"]);
     for name in [
         "controller.position_gain_per_s",

@@ -34,7 +34,7 @@ const fn question(
 
 const MM: (f64, f64) = (-1e6, 1e6);
 
-const QUESTIONS: [Question; 14] = [
+const QUESTIONS: [Question; 15] = [
     question(
         "counts_per_revolution",
         "Counts of the encoder from index to index: 4 times its lines; 0 if it has no index",
@@ -112,6 +112,12 @@ const QUESTIONS: [Question; 14] = [
         "Plus is the way that the axis goes on a plus command: 1 yes, 0 no, -1 to be asked when it has moved",
         (-1.0, 1.0),
         |_| -1.0,
+    ),
+    question(
+        "home_switch",
+        "End of the travel at which the home switch is: -1 low, 1 high; 0 if there is none, or not yet",
+        (-1.0, 1.0),
+        |_| 0.0,
     ),
 ];
 

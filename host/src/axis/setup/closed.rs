@@ -1,4 +1,4 @@
-//! Steps from the drive's model on: identification, the loop, the encoder's map, the offset.
+//! Steps from the drive's model on: identification, the loop, the encoder's map, the offset, homing.
 
 use leadscrew::tuning::DriveModel;
 
@@ -148,6 +148,41 @@ impl Session<'_> {
             100.0 * nulled.left_after
         ));
         self.outcome.offset_left = Some([nulled.left_before, nulled.left_after]);
+        Ok(())
+    }
+
+    /// Homes the axis to its switch.
+    pub(super) fn home(&mut self) -> Result<(), ProcedureError> {
+        let switch = self
+            .answers
+            .get("home_switch", &self.settings, self.guide)?;
+        if switch == 0.0 {
+            self.guide.tell(
+                "home: left out. With a home switch wired, `setup --from home` goes on here: the axis has no origin and no soft \
+                 limits before it is homed",
+            );
+            return Ok(());
+        }
+        let end = if switch < 0.0 { "low" } else { "high" };
+        self.set([("homing.search_direction".to_owned(), switch.signum())])?;
+        let homing = &self.settings.axis.homing;
+        self.agreed(&format!(
+            "home: the axis seeks its home switch towards the {end} end with {} mm/min, {} mm at most, backs off {} mm and goes to \
+             it and to the index behind it with {} mm/min, loop closed.",
+            homing.search_feed_mm_per_min,
+            homing.max_search_mm,
+            homing.back_off_mm,
+            homing.approach_feed_mm_per_min,
+        ))?;
+        self.axis.enable()?;
+        let homed = self.axis.home()?;
+        self.axis.disable()?;
+        self.save()?;
+        self.guide.tell(&format!(
+            "home: homed, stands at {:.4} mm; saved",
+            homed.position_mm
+        ));
+        self.outcome.homed_at_mm = Some(homed.position_mm);
         Ok(())
     }
 }

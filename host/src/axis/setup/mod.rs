@@ -2,7 +2,7 @@
 //! axis's store, so that the next session goes on from there.
 //!
 //! ```text
-//! machine ─► polarity ─► direction ─► index ─► identify ─► tune ─► encoder ─► offset
+//! machine ─► polarity ─► direction ─► index ─► identify ─► tune ─► encoder ─► offset ─► home
 //!            (open-loop, bounded)              (open-loop)  (the first loop)
 //! ```
 //!
@@ -44,10 +44,12 @@ pub enum Step {
     Encoder,
     /// The offset of the drive
     Offset,
+    /// The home switch
+    Home,
 }
 
 impl Step {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Machine,
         Self::Polarity,
         Self::Direction,
@@ -56,6 +58,7 @@ impl Step {
         Self::Tune,
         Self::Encoder,
         Self::Offset,
+        Self::Home,
     ];
 
     const fn name(self) -> &'static str {
@@ -68,6 +71,7 @@ impl Step {
             Self::Tune => "tune",
             Self::Encoder => "encoder",
             Self::Offset => "offset",
+            Self::Home => "home",
         }
     }
 }
@@ -157,6 +161,7 @@ impl Session<'_> {
                 Step::Tune => self.tune()?,
                 Step::Encoder => self.encoder()?,
                 Step::Offset => self.offset()?,
+                Step::Home => self.home()?,
             }
             self.outcome.steps.push(step.name());
         }

@@ -29,6 +29,8 @@ pub struct Outcome {
     pub follows: Option<Follows>,
     /// What was left of the offset for the loop, before and after, of full command.
     pub offset_left: Option<[f64; 2]>,
+    /// Where the axis stood after it was homed, mm.
+    pub homed_at_mm: Option<f64>,
 }
 
 /// A loop that was made.

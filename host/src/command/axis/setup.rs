@@ -54,6 +54,6 @@ pub fn run(axis: &mut Axis, args: &SetupArgs) -> Result<(), CommandError> {
             outcome,
         });
     }
-    person.tell("done: the axis is set up, and all of it is saved. Home it before soft limits count: leadscrew home");
+    person.tell("done: the axis is set up, and all of it is saved. Soft limits count once it is homed: leadscrew home");
     Ok(())
 }
