@@ -202,7 +202,7 @@ impl Inner {
         if seen.fault.is_some() {
             return Err(Refusal::FaultLatched);
         }
-        if self.must_disable {
+        if self.watch.must_disable() {
             return Err(Refusal::QueueFull);
         }
         if self.needs_restart() {

@@ -8,6 +8,7 @@ mod answer;
 mod motion;
 mod port;
 mod settings;
+mod watch;
 
 pub use port::{Order, Passed, Port, Seen, Ticket};
 
@@ -23,6 +24,7 @@ use crate::params::ParamError;
 use crate::settings::Settings;
 use crate::telemetry::Record;
 use motion::Mover;
+use watch::Watch;
 
 /// What an axis says of itself in its hello.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +42,6 @@ pub struct Identity {
     /// Ticks from an order to the start of its plan, 1 or more: as many as planning and the way to the tick take.
     pub lead_ticks: u32,
 }
-
-/// Leases for which a tool is waited for after a request that takes long: 10 s.
-const PATIENCE: u32 = 100;
 
 /// What came of a request that does something: for when it comes again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,15 +73,9 @@ struct Inner {
     draft: Draft,
     session: Session,
     lease: Lease,
+    watch: Watch,
     mover: Mover,
     last_done: Done,
-    /// The lease has lapsed, and the axis does not know yet.
-    must_disable: bool,
-    /// Tick of a request for which the axis itself took its time, while it stood: the lease lasts until the next one comes,
-    /// or [`PATIENCE`] leases long.
-    busy_since: Option<u32>,
-    /// The tick that was looked at last.
-    looked_at: Option<u32>,
     /// A record in so many ticks; 0 for none.
     every: u16,
     until_record: u16,
@@ -115,11 +108,9 @@ impl Service {
                 draft: Draft::default(),
                 session: Session::default(),
                 lease: Lease::new(tick_hz),
+                watch: Watch::default(),
                 mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
                 last_done: Done::Nothing,
-                must_disable: false,
-                busy_since: None,
-                looked_at: None,
                 every: 0,
                 until_record: 0,
                 next_record: 0,
@@ -241,30 +232,18 @@ impl Service {
 impl Inner {
     fn poll(&mut self, seen: &Seen, port: &mut dyn Port) {
         self.mover.look(seen, port);
-        // What the axis did not look at while it computed is no time in which its tool was silent. In motion it counts.
-        let step = self
-            .looked_at
-            .map_or(0, |tick| seen.tick.wrapping_sub(tick));
-        self.looked_at = Some(seen.tick);
-        if step > 1 && !self.may_move(seen) {
-            self.lease.prolong(seen.tick);
-        }
-        let patience = self.lease.ticks().saturating_mul(PATIENCE);
-        let is_excused = (self.busy_since)
-            .is_some_and(|since| seen.tick.wrapping_sub(since) < patience && !self.may_move(seen));
-        self.must_disable |= !is_excused && self.lease.has_lapsed(seen.tick);
+        let may_move = self.may_move(seen);
+        let must_disable = self.watch.look(&mut self.lease, seen.tick, may_move);
         // Asked again until there is a way on.
-        if self.must_disable && port.order(&Order::Enable(false)).is_ok() {
-            self.must_disable = false;
+        if must_disable && port.order(&Order::Enable(false)).is_ok() {
+            self.watch.note_disabled();
         }
     }
 
     /// Takes a frame; the answer, if it has one, is left in the buffer.
     fn take(&mut self, frame: &Frame<'_>, dropped: &mut Dropped, seen: &Seen, port: &mut dyn Port) {
         self.buffer.clear();
-        if self.busy_since.take().is_some() {
-            self.lease.prolong(seen.tick);
-        }
+        self.watch.note_heard(&mut self.lease, seen.tick);
         let Header {
             channel, session, ..
         } = frame.header;
@@ -328,8 +307,7 @@ impl Inner {
         self.answer(header, &Self::reply(seen, outcome));
     }
 
-    /// Carries it out. What takes long on an axis that stands costs its tool no lease: nothing can move before another
-    /// request comes.
+    /// Carries it out.
     fn worked(
         &mut self,
         request: &Request<'_>,
@@ -338,7 +316,7 @@ impl Inner {
     ) -> Result<Passed, Refusal> {
         let done = self.carry_out(request, seen, port);
         let is_excused = request.takes_long() && !self.may_move(seen);
-        self.busy_since = is_excused.then_some(seen.tick);
+        self.watch.note_worked(seen.tick, is_excused);
         done
     }
 
