@@ -1,7 +1,7 @@
 //! How an axis stands, in the units of people.
 
 use leadscrew::protocol::reply::{
-    ENABLED, HELD, HOMED, LEASED, LEASED_HERE, MOVING, PLANNED, Reply,
+    ENABLED, HELD, HOMED, LEASED, LEASED_HERE, MOVING, PLANNED, Reply, UNSAVED,
 };
 use leadscrew::supervisor::{Fault, State};
 
@@ -34,6 +34,8 @@ pub struct Status {
     /// Planned moves are what moves the axis, or may: it is ready or moving, and neither homing nor driven by another
     /// source.
     pub is_planned: bool,
+    /// Parameters were set since they were saved, or since the axis was switched on: they go when it is switched off.
+    pub is_unsaved: bool,
     /// Feed override, %.
     pub override_percent: u16,
     /// Where it is, mm from the origin; from where the encoder counts while none is known.
@@ -78,6 +80,7 @@ impl Status {
             is_leased: is(LEASED),
             is_leased_here: is(LEASED_HERE),
             is_planned: is(PLANNED),
+            is_unsaved: is(UNSAVED),
             override_percent: percent,
             position_mm: position_nm as f64 / NM_PER_MM,
             setpoint_mm: setpoint_nm as f64 / NM_PER_MM,

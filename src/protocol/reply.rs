@@ -16,6 +16,8 @@ pub const LEASED: u16 = 1 << 4;
 pub const LEASED_HERE: u16 = 1 << 5;
 /// Planned moves are what moves the axis, or may.
 pub const PLANNED: u16 = 1 << 6;
+/// Parameters were set since they were saved, or since the axis was switched on.
+pub const UNSAVED: u16 = 1 << 7;
 
 /// The axis can be homed.
 pub const CAN_HOME: u32 = 1;
@@ -83,7 +85,7 @@ messages! {
             fault: u8,
             /// Bit n: the warning of number n.
             warnings: u32,
-            /// Bit 0 enabled, 1 moving, 2 homed, 3 feed hold, 4 leased, 5 leased by this session, 6 moved by plans.
+            /// Bit 0 enabled, 1 moving, 2 homed, 3 feed hold, 4 leased, 5 leased by this session, 6 moved by plans, 7 parameters not saved.
             flags: u16,
             /// Feed override, %.
             percent: u16,

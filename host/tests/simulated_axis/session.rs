@@ -22,8 +22,10 @@ fn an_axis_is_set_saved_and_moved_and_is_the_same_after_a_power_cycle() {
         Ok(())
     })
     .unwrap();
+    assert!(tool.status().unwrap().is_unsaved);
     tool.save_parameters().unwrap();
     let status = tool.enable().unwrap();
+    assert!(!status.is_unsaved);
     assert!(status.is_enabled);
     let status = tool.move_and_wait(20.0, 3000.0).unwrap();
     assert!((status.position_mm - 20.0).abs() < 0.02, "{status:?}");
@@ -31,6 +33,7 @@ fn an_axis_is_set_saved_and_moved_and_is_the_same_after_a_power_cycle() {
     drop(tool);
 
     let mut tool = axis(&flash);
+    assert!(!tool.status().unwrap().is_unsaved);
     for (name, value) in tuned() {
         let found = tool.parameter(&name).unwrap().number();
         assert_eq!(found, Some(value), "{name}");

@@ -8,7 +8,9 @@ use crate::protocol::decoder::Dropped;
 use crate::protocol::frame::Header;
 use crate::protocol::parameters::{NewValue, Which, parameter};
 use crate::protocol::refusal::Refusal;
-use crate::protocol::reply::{ENABLED, HELD, HOMED, LEASED, LEASED_HERE, MOVING, PLANNED, Reply};
+use crate::protocol::reply::{
+    ENABLED, HELD, HOMED, LEASED, LEASED_HERE, MOVING, PLANNED, Reply, UNSAVED,
+};
 use crate::protocol::request::Request;
 use crate::setpoint::sources::Source;
 use crate::supervisor::State;
@@ -95,6 +97,7 @@ impl Inner {
             (holder.is_some(), LEASED),
             (holder == Some(self.session.number()), LEASED_HERE),
             (seen.is_planned, PLANNED),
+            (self.is_unsaved, UNSAVED),
         ];
         let flags = flags
             .into_iter()
@@ -176,8 +179,13 @@ impl Inner {
                 axis(port, axis::Request::StartExperiment(program))
             }
             Request::EndExperiment {} => axis(port, axis::Request::ReleaseExperiment),
-            Request::SaveParameters {}
-            | Request::SaveBytes { .. }
+            Request::SaveParameters {} => {
+                Self::check_off(seen)?;
+                let passed = self.serve(request, port)?;
+                self.is_unsaved = false;
+                Ok(passed)
+            }
+            Request::SaveBytes { .. }
             | Request::Erase { .. }
             | Request::TakeMap {}
             | Request::SaveMap {}

@@ -65,6 +65,8 @@ struct Inner {
     identity: Identity,
     tick_hz: u32,
     settings: Settings,
+    /// They are others than those that were saved, or that the axis was switched on with.
+    is_unsaved: bool,
     /// The copy of an edit.
     edit: Option<Settings>,
     /// Control rate and edge timer that the axis was switched on with, Hz.
@@ -103,6 +105,7 @@ impl Service {
                 identity,
                 tick_hz,
                 settings,
+                is_unsaved: false,
                 edit: None,
                 rates,
                 draft: Draft::default(),

@@ -87,6 +87,7 @@ impl Inner {
             let feed = settings.axis.motion.max_feed_mm_per_min;
             self.mover.reconfigure(&config, feed);
         }
+        self.is_unsaved |= settings != self.settings;
         self.settings = settings;
         Ok(passed)
     }

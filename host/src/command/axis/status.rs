@@ -21,6 +21,7 @@ pub struct Report {
     moving: bool,
     homed: bool,
     held: bool,
+    unsaved: bool,
     override_percent: u16,
     position_mm: f64,
     setpoint_mm: f64,
@@ -54,6 +55,7 @@ impl Report {
             moving: status.is_moving,
             homed: status.is_homed,
             held: status.is_held,
+            unsaved: status.is_unsaved,
             override_percent: status.override_percent,
             position_mm: status.position_mm,
             setpoint_mm: status.setpoint_mm,
@@ -91,6 +93,12 @@ impl Report {
         if self.override_percent != 100 || self.held {
             let hold = if self.held { ", feed hold" } else { "" };
             let _ = writeln!(text, "override         {} %{hold}", self.override_percent);
+        }
+        if self.unsaved {
+            let _ = writeln!(
+                text,
+                "parameters       changed, and not saved: `leadscrew params save` keeps them"
+            );
         }
         text
     }
