@@ -18,6 +18,7 @@
 
 pub mod axis_control;
 pub mod captures;
+pub mod edge_ring;
 pub mod link;
 pub mod modbus;
 pub mod options;
