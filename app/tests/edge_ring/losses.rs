@@ -17,7 +17,11 @@ fn edges(count: usize, turn: usize) -> Vec<Edge> {
     (0..count)
         .map(|index| Edge {
             at: 100 + 20 * index as i64,
-            step: if index / turn % 2 == 0 { 1 } else { -1 },
+            step: if (index / turn).is_multiple_of(2) {
+                1
+            } else {
+                -1
+            },
         })
         .collect()
 }
