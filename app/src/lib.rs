@@ -19,6 +19,7 @@
 pub mod axis_control;
 pub mod captures;
 pub mod edge_ring;
+pub mod input_filter;
 pub mod link;
 pub mod modbus;
 pub mod options;

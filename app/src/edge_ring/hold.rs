@@ -44,7 +44,7 @@ impl fmt::Display for HoldError {
 impl core::error::Error for HoldError {}
 
 /// Checks a ring of `words` at `tick_hz`, with edges of A and B at `edge_hz` at most and an input filter that passes
-/// `filter_hz` of them whatever comes in.
+/// `filter_hz` of them whatever comes in ([`crate::input_filter::InputFilter::passed_hz`]).
 ///
 /// # Errors
 /// [`HoldError`] if it is shorter than four ticks of `edge_hz`, or half of it shorter than one of `filter_hz`.

@@ -16,7 +16,7 @@
 //! [`EdgeRing::new`]'s `skew` of the sample may have been counted or not, whatever its time says: the count decides. Every
 //! edge moves the count by one, so a tick has as many edges as counts modulo 2, in whatever order they went up and down. Edges
 //! that are at least 2·skew + 1 clocks apart leave one in doubt at most, so that this parity decides it without ambiguity,
-//! reversals included; the filter of the inputs passes no closer ones. If a disturbance brings several in
+//! reversals included; [`crate::input_filter`] gives a filter that passes no closer ones. If a disturbance brings several in
 //! spite of it, as many are taken as explain the count, and failing that as the parity and the times ask for.
 //!
 //! An edge that was counted may so have a time up to `skew` after the sample. No time may lie after its capture's, so the
