@@ -26,6 +26,7 @@ pub mod modbus;
 pub mod options;
 pub mod queues;
 pub mod report;
+pub mod safe_state;
 pub mod store;
 pub mod telemetry;
 pub mod tick;

@@ -16,6 +16,9 @@ pub trait Control {
 
     /// A tick without inputs: safe for the board.
     fn missed(&mut self) -> Self::Record;
+
+    /// The tick that [`Self::step`] was called for ended after its budget.
+    fn overlong(&mut self) {}
 }
 
 /// The timer whose interrupt is the tick.
@@ -108,6 +111,7 @@ pub struct Runtime<C: Control + 'static> {
     records: Producer<'static, C::Record>,
     counters: &'static Counters,
     budget: u32,
+    was_in_time: bool,
 }
 
 impl<C: Control> Runtime<C> {
@@ -123,7 +127,14 @@ impl<C: Control> Runtime<C> {
             records,
             counters,
             budget,
+            was_in_time: false,
         }
+    }
+
+    /// Whether the last tick had its inputs and ended within its budget: what a watchdog may be fed by.
+    #[inline]
+    pub const fn was_in_time(&self) -> bool {
+        self.was_in_time
     }
 
     /// One tick. `inputs` is `None` where they did not come in time: counted as late.
@@ -138,18 +149,22 @@ impl<C: Control> Runtime<C> {
         if self.records.enqueue(record).is_err() {
             add_one(&self.counters.lost_records);
         }
-        self.check_end(timer);
+        self.was_in_time = self.check_end(timer) && inputs.is_some();
         // Last: a reader that sees tick n counted sees all that was counted in it.
         add_one(&self.counters.ticks);
         record
     }
 
-    fn check_end(&self, timer: &impl TickTimer) {
+    /// Whether the tick ended in time.
+    fn check_end(&mut self, timer: &impl TickTimer) -> bool {
         let end = timer.since_due();
-        if timer.is_due_again() || end > self.budget {
+        let is_overlong = timer.is_due_again() || end > self.budget;
+        if is_overlong {
             add_one(&self.counters.overlong);
+            self.control.overlong();
         }
         keep_worst(&self.counters.worst_end, end);
+        !is_overlong
     }
 }
 
@@ -223,6 +238,7 @@ mod tests {
         let (mut runtime, mut records, counters) = runtime();
         assert_eq!(runtime.run(&Timer::ending_at(50), Some(&21)), 42);
         assert_eq!(records.dequeue(), Some(42));
+        assert!(runtime.was_in_time());
         let counts = counters.read();
         assert!(counts.is_clean());
         assert_eq!(
@@ -237,6 +253,7 @@ mod tests {
         assert_eq!(runtime.run(&Timer::ending_at(5), None), u32::MAX);
         assert_eq!(records.dequeue(), Some(u32::MAX));
         assert_eq!(counters.read().late, 1);
+        assert!(!runtime.was_in_time());
         assert!(!counters.read().is_clean());
     }
 
@@ -245,6 +262,7 @@ mod tests {
         let (mut runtime, _records, counters) = runtime();
         runtime.run(&Timer::ending_at(51), Some(&1));
         assert_eq!(counters.read().overlong, 1);
+        assert!(!runtime.was_in_time());
         let wrapped = Timer {
             again: true,
             ..Timer::ending_at(4)

@@ -222,11 +222,11 @@ faults! {
         cause: "An overloaded or jammed axis, a drive slower than was set, a loop that is unstable.",
         remedy: "Check the full-command feed by `identify`; lower feed or acceleration; look for a mechanical cause.",
     }
-    /// Ticks were late or missed.
+    /// Ticks were missed or ended too late.
     LateTick = 17, ControlledStop {
-        condition: "More than `missed_limit` missed ticks, of which `missed_forgiven_per_s` a second are forgiven.",
+        condition: "More than `missed_limit` ticks that were missed or ended after their budget, of which `missed_forgiven_per_s` a second are forgiven.",
         bound: "the first tick after them",
-        figure: "missed ticks not forgiven",
+        figure: "such ticks not forgiven",
         cause: "Another interrupt holds the processor; a tick rate that is too high for the board.",
         remedy: "Look at the worst start and end of the tick; lower the rate or choose a cheaper estimator.",
     }

@@ -53,6 +53,8 @@ pub struct AxisControl<B> {
     tick: u32,
     /// Ticks missed since the last one.
     missed: u16,
+    /// The last one ended too late.
+    was_overlong: bool,
     board: PhantomData<fn(&B)>,
 }
 
@@ -78,6 +80,7 @@ impl<B> AxisControl<B> {
             told_fault: None,
             tick: 0,
             missed: 0,
+            was_overlong: false,
             board: PhantomData,
         }
     }
@@ -96,8 +99,11 @@ impl<B: Inlet> Control for AxisControl<B> {
         }
         let enable = self.enable && self.interlock.try_enable();
         let mut inputs = board.inputs(enable);
-        inputs.missed_ticks = inputs.missed_ticks.saturating_add(self.missed);
+        let missed = inputs.missed_ticks.saturating_add(self.missed);
         self.missed = 0;
+        // The supervisor takes both for the same; what is recorded lacks only what was missed.
+        let overlong = core::mem::take(&mut self.was_overlong).into();
+        inputs.missed_ticks = missed.saturating_add(overlong);
         let outputs = self.axis.step(&inputs);
         if !(enable || outputs.enabled || outputs.brake_released) {
             self.interlock.disabled();
@@ -106,7 +112,7 @@ impl<B: Inlet> Control for AxisControl<B> {
         self.note_index(&inputs.capture);
         Report {
             indexes: self.indexes,
-            missed: inputs.missed_ticks,
+            missed,
             scope_triggered: (self.scope.as_ref())
                 .is_some_and(|scope| scope.state() == State::Triggered),
             ..Report::of(&self.axis)
@@ -121,6 +127,10 @@ impl<B: Inlet> Control for AxisControl<B> {
             scope.miss(1);
         }
         Report::of_missed_tick()
+    }
+
+    fn overlong(&mut self) {
+        self.was_overlong = true;
     }
 }
 
@@ -155,12 +165,16 @@ mod tests {
     }
 
     fn axis() -> Axis<'static> {
+        // It is pushed as no machine is.
+        axis_with(SupervisorParams::widest())
+    }
+
+    fn axis_with(supervisor: SupervisorParams) -> Axis<'static> {
         let drive = DriveModel::second_order(0.09, 0.5);
         let estimator = EstimatorConfig::by_name("simple").unwrap().unwrap();
         let params = AxisParams {
             controller: drive.place_poles(35.0).unwrap(),
-            // It is pushed as no machine is.
-            supervisor: SupervisorParams::widest(),
+            supervisor,
             ..AxisParams::new(estimator)
         };
         Axis::new(params.validate().unwrap())
@@ -170,10 +184,14 @@ mod tests {
 
     /// The axis in its tick, and thread mode's ends.
     fn control() -> (AxisControl<Standing>, LinkEnds) {
+        control_of(axis())
+    }
+
+    fn control_of(axis: Axis<'static>) -> (AxisControl<Standing>, LinkEnds) {
         let queues: &'static mut Queues = Box::leak(Box::new(Queues::new()));
         let interlock: &'static Interlock = Box::leak(Box::new(Interlock::new()));
         let (tick, captures, link, _) = queues.split();
-        (AxisControl::new(axis(), tick, captures, interlock), link)
+        (AxisControl::new(axis, tick, captures, interlock), link)
     }
 
     #[test]
@@ -218,6 +236,25 @@ mod tests {
         assert!(link.requests.enqueue(ENABLE).is_ok());
         let (command, enabled) = control.step(&Standing(500)).record.drive();
         assert_eq!((command.to_bits(), enabled), (0, true), "no kick");
+    }
+
+    #[test]
+    fn ticks_that_end_too_late_are_a_fault_beyond_a_limit_and_no_gap_in_what_is_recorded() {
+        let supervisor = SupervisorParams {
+            missed_limit: 3.0,
+            missed_forgiven_per_s: 1.0,
+            ..SupervisorParams::widest()
+        };
+        let (mut control, mut link) = control_of(axis_with(supervisor));
+        assert!(link.requests.enqueue(ENABLE).is_ok());
+        let faults = [0; 6].map(|_| {
+            let report = control.step(&Standing(0));
+            assert_eq!(report.missed, 0);
+            control.overlong();
+            report.seen.fault
+        });
+        let late = Some(leadscrew::supervisor::Fault::LateTick);
+        assert_eq!(faults, [None, None, None, None, late, late]);
     }
 
     #[test]
