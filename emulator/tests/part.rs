@@ -279,3 +279,31 @@ fn the_machine_at_rest_tells_its_levels() {
     assert_eq!(level(Pin::c(1)), Some(false), "no emergency stop");
     assert_eq!(level(Pin::b(14)), Some(false), "the encoder is there");
 }
+
+#[test]
+fn the_core_stands_while_a_sector_is_erased_and_the_watchdog_does_not() {
+    const FLASH: u32 = 0x4002_3c00;
+    const WORD: u32 = 0x0800_4000;
+    let (mut part, _machine) = idle_part();
+    part.poke(FLASH + 0x04, 0x4567_0123);
+    part.poke(FLASH + 0x04, 0xcdef_89ab);
+    part.poke(FLASH + 0x10, 2 << 8 | 1);
+    part.poke(WORD, 0x1234_5678);
+    run_us(&mut part, 100);
+    assert_eq!(word(&part, WORD), 0x1234_5678);
+    part.poke(FLASH + 0x10, 1 << 16 | 2 << 8 | 1 << 3 | 1 << 1);
+    let before = part.cycles();
+    run_us(&mut part, 200_000);
+    assert!(part.cycles() - before < 4_000, "the core ran on");
+    run_us(&mut part, 100_000);
+    assert!(part.cycles() - before > 1_000_000, "the core stands for ever");
+    assert_eq!(word(&part, WORD), u32::MAX);
+    // 50 ms of the watchdog end an erasure of 250: what the board lengthens its period for.
+    part.poke(0x4000_3000, 0xcccc);
+    part.poke(0x4000_3000, 0x5555);
+    part.poke(0x4000_3008, 400);
+    part.poke(0x4000_3000, 0xaaaa);
+    part.poke(FLASH + 0x10, 1 << 16 | 2 << 8 | 2 << 3 | 1 << 1);
+    run_us(&mut part, 60_000);
+    assert_eq!(part.resets(), 1);
+}
