@@ -70,6 +70,17 @@ struct Steps {
     forward: bool,
 }
 
+/// What was put out since it was asked last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PutOut {
+    /// The drive was enabled at some time.
+    pub enabled: bool,
+    /// The brake was released at some time.
+    pub brake_released: bool,
+    /// Largest output of the converter to either side, V.
+    pub volts: f64,
+}
+
 /// The machine at the pins.
 pub struct AxisMachine {
     world: World,
@@ -90,6 +101,7 @@ pub struct AxisMachine {
     edges: u64,
     /// Since when the outputs are as they are.
     changed_at: [u64; 2],
+    put_out: PutOut,
 }
 
 impl AxisMachine {
@@ -137,6 +149,7 @@ impl AxisMachine {
             analog: 0x800,
             edges: 0,
             changed_at: [0; 2],
+            put_out: PutOut::default(),
         };
         machine.announce();
         Ok(Arc::new(Mutex::new(machine)))
@@ -182,6 +195,11 @@ impl AxisMachine {
     pub fn is_safe(&self) -> bool {
         // Half of the converter's last bit.
         !self.enable && !self.brake_released && self.converter.volts().abs() < 2e-4
+    }
+
+    /// What was put out since this was asked last.
+    pub fn take_put_out(&mut self) -> PutOut {
+        std::mem::take(&mut self.put_out)
     }
 
     /// The x4 count of the encoder's lines.
@@ -395,6 +413,10 @@ impl Surroundings for AxisMachine {
             }
             _ => {}
         }
+        let seen = &mut self.put_out;
+        seen.enabled |= self.enable;
+        seen.brake_released |= self.brake_released;
+        seen.volts = seen.volts.max(self.converter.volts().abs());
     }
 
     fn transfer(&mut self, _clock: u64, byte: u8) -> u8 {

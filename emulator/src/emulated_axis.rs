@@ -88,6 +88,12 @@ impl EmulatedAxis {
         &mut self.part
     }
 
+    /// Seconds since power-on.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.part.now() as f64 / CLOCK_HZ as f64
+    }
+
     /// The image.
     #[must_use]
     pub const fn elf(&self) -> &Elf {
@@ -123,9 +129,7 @@ impl Line for EmulatedAxis {
         self.part.send(Serial::Link, out);
         self.run(EXCHANGE).map_err(io::Error::other)?;
         received.extend(self.part.receive(Serial::Link));
-        Ok(Duration::from_secs_f64(
-            self.part.now() as f64 / CLOCK_HZ as f64,
-        ))
+        Ok(Duration::from_secs_f64(self.seconds()))
     }
 
     fn name(&self) -> String {

@@ -19,7 +19,7 @@ mod emulator;
 mod part;
 mod quadrature_lines;
 
-pub use axis_machine::{AxisMachine, MachineHandle};
+pub use axis_machine::{AxisMachine, MachineHandle, PutOut};
 pub use converter::Ad5761r;
 pub use elf::{Elf, ElfError};
 pub use emulated_axis::{EmulatedAxis, NoFirmware, firmware};

@@ -296,7 +296,10 @@ fn the_core_stands_while_a_sector_is_erased_and_the_watchdog_does_not() {
     run_us(&mut part, 200_000);
     assert!(part.cycles() - before < 4_000, "the core ran on");
     run_us(&mut part, 100_000);
-    assert!(part.cycles() - before > 1_000_000, "the core stands for ever");
+    assert!(
+        part.cycles() - before > 1_000_000,
+        "the core stands for ever"
+    );
     assert_eq!(word(&part, WORD), u32::MAX);
     // 50 ms of the watchdog end an erasure of 250: what the board lengthens its period for.
     part.poke(0x4000_3000, 0xcccc);
