@@ -18,6 +18,9 @@
 
 pub mod axis_control;
 pub mod captures;
+pub mod converter;
+pub mod edge_ring;
+pub mod input_filter;
 pub mod link;
 pub mod modbus;
 pub mod options;
