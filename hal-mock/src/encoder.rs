@@ -140,6 +140,12 @@ impl Encoder {
         }
     }
 
+    /// The edges of the last capture: when they came, and +1 or −1 for their direction. What a capture does not tell,
+    /// and whoever drives the lines of a real counter needs.
+    pub fn passed(&self) -> impl Iterator<Item = (u32, i8)> + '_ {
+        self.ring.passed()
+    }
+
     /// Passes all edges of a tick in which the shaft keeps going.
     fn go_on(&mut self, inverse: &Inverse) {
         if inverse.is_backward() {

@@ -165,6 +165,12 @@ impl Spindle {
         self.encoder.advance(&seen);
     }
 
+    /// Its encoder, for the edges themselves.
+    #[must_use]
+    pub const fn encoder(&self) -> &Encoder {
+        &self.encoder
+    }
+
     /// The spindle itself at the sampling instant, d of its encoder from an index.
     #[must_use]
     pub const fn truth(&self) -> State {

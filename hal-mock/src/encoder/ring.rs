@@ -74,6 +74,15 @@ impl Ring {
         }
     }
 
+    /// The edges captured with their directions, in order.
+    pub fn passed(&self) -> impl Iterator<Item = (u32, Direction)> + '_ {
+        let count = self.taken.wrapping_sub(self.start);
+        (0..count).map(|index| {
+            let slot = self.start.wrapping_add(index) as usize % SIZE;
+            (self.times[slot], self.directions[slot])
+        })
+    }
+
     /// Edges were lost since the capture before.
     pub const fn overrun(&self) -> bool {
         self.overrun

@@ -1,0 +1,161 @@
+//! The core: rsemu's, which sleeps for as long as it sleeps, and stands still while the flash is busy.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use rsemu::core::device::{Device, DeviceClass, MachineReset, RealizeCtx, ResetKind, SinkPin};
+use rsemu::core::error::Result;
+use rsemu::core::props::Props;
+use rsemu::core::sched::{Budget, Consumed, TickCursor};
+use rsemu::core::space::{AddressSpace, MemAttrs};
+use rsemu::core::value::Width;
+use rsemu::core::wire::{Level, WireId, WireSource};
+use rsemu::cpu::arm::v7m::ArmV7m;
+use rsemu::machine::{BindCtx, Instance};
+
+use crate::emulator::lock;
+
+/// Status register of the flash, and its bit "busy".
+const FLASH_STATUS: u64 = 0x4002_3c0c;
+const BUSY: u64 = 1 << 16;
+const CLASS_NAME: &str = "axis.core";
+
+/// What the outside knows of the core.
+#[derive(Debug, Default)]
+pub struct CoreState {
+    /// Cycles awake.
+    pub awake: AtomicU64,
+    /// The core asked for a reset of the part.
+    pub asked: AtomicU64,
+    stands: AtomicBool,
+}
+
+/// The core.
+#[derive(Debug)]
+pub struct Core {
+    cpu: ArmV7m,
+    state: Arc<CoreState>,
+    space: OnceLock<Arc<AddressSpace>>,
+    reset: OnceLock<Arc<MachineReset>>,
+    told: std::sync::Mutex<Option<WireSource>>,
+}
+
+impl Core {
+    /// A core as the machine's description has it.
+    pub fn new(props: &Props, state: Arc<CoreState>) -> Result<Self> {
+        Ok(Self {
+            cpu: ArmV7m::from_props(props)?,
+            state,
+            space: OnceLock::new(),
+            reset: OnceLock::new(),
+            told: std::sync::Mutex::new(None),
+        })
+    }
+
+    /// rsemu's own, to look into.
+    pub const fn cpu(&self) -> &ArmV7m {
+        &self.cpu
+    }
+
+    /// The flash erases or programs: no instruction comes from it.
+    fn is_starved(&self) -> bool {
+        let status = self
+            .space
+            .get()
+            .and_then(|space| space.read(FLASH_STATUS, Width::U32, MemAttrs::DEBUG).ok());
+        status.is_some_and(|status| status & BUSY != 0)
+    }
+
+    fn run_awake(&self, ticks: u64) -> u64 {
+        let before = self.cpu.cycles();
+        let used = self.cpu.run_budget(ticks);
+        let awake = self.cpu.cycles() - before;
+        self.state.awake.fetch_add(awake, Ordering::Relaxed);
+        self.heed_reset_request();
+        used
+    }
+
+    /// The program asked for a reset: of the whole part, not of the core alone.
+    fn heed_reset_request(&self) {
+        if !self.cpu.reset_requested() {
+            return;
+        }
+        self.cpu.clear_reset_request();
+        self.state.asked.fetch_add(1, Ordering::Relaxed);
+        if let Some(source) = &*lock(&self.told) {
+            source.pulse(Level::High);
+        }
+        if let Some(reset) = self.reset.get() {
+            reset.request();
+        }
+        self.state.stands.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Device for Core {
+    fn class(&self) -> &'static DeviceClass {
+        &CLASS
+    }
+
+    fn realize(&self, ctx: &mut RealizeCtx<'_>) -> Result<()> {
+        let _ = self.reset.set(ctx.machine_reset()?);
+        self.cpu.realize(ctx)
+    }
+
+    fn attach_cursor(&self, cursor: TickCursor) {
+        Device::attach_cursor(&self.cpu, cursor);
+    }
+
+    fn sink(&self, port: &str, sources: &[WireId]) -> Option<SinkPin> {
+        self.cpu.sink(port, sources)
+    }
+
+    fn connect(&self, _port: &str, source: WireSource) -> Result<()> {
+        *lock(&self.told) = Some(source);
+        Ok(())
+    }
+
+    fn reset(&self, kind: ResetKind) {
+        self.state.stands.store(false, Ordering::Relaxed);
+        self.cpu.reset(kind);
+    }
+
+    fn is_runnable(&self) -> bool {
+        true
+    }
+
+    fn run(&self, budget: Budget) -> Consumed {
+        // A core that waits for its reset does nothing more.
+        if self.state.stands.load(Ordering::Relaxed) || self.is_starved() {
+            return Consumed::new(budget.ticks);
+        }
+        if self.cpu.is_asleep() {
+            // One cycle, in which it sees whether something woke it: interrupts come between two rounds.
+            let used = self.cpu.run_budget(1);
+            if self.cpu.is_asleep() {
+                return Consumed::new(budget.ticks);
+            }
+            // The rest at once: a core that consumed less would hold all timers of its crystal back.
+            return Consumed::new(used + self.run_awake(budget.ticks - used));
+        }
+        Consumed::new(self.run_awake(budget.ticks))
+    }
+}
+
+impl Instance for Core {
+    fn bind(&self, ctx: &BindCtx<'_>) -> Result<()> {
+        if let Some(space) = ctx.space() {
+            let _ = self.space.set(Arc::clone(space));
+        }
+        Instance::bind(&self.cpu, ctx)
+    }
+}
+
+/// The class.
+pub static CLASS: DeviceClass = DeviceClass {
+    name: CLASS_NAME,
+    version: 1,
+    summary: "the core of the part",
+    properties: &[],
+    construct: |props| Ok(Box::new(Core::new(props, Arc::default())?)),
+};

@@ -1,0 +1,37 @@
+//! From a blank flash on.
+
+use leadscrew_emulator::PutOut;
+
+use crate::session::{BOOT_MS, Board};
+
+#[test]
+fn a_blank_board_boots_into_the_safe_state() {
+    let board = Board::blank();
+    board.run_ms(BOOT_MS);
+    board.machine(|machine| {
+        assert!(machine.is_safe());
+        assert_eq!(machine.take_put_out(), PutOut::default());
+        // It speaks to the converter in every tick.
+        let (frames, broken) = machine.converter().frames();
+        assert!(frames > 200 && broken == 0, "{frames}, {broken}");
+    });
+}
+
+#[test]
+fn a_tool_learns_what_the_board_is_and_how_it_stands() {
+    let board = Board::blank();
+    let mut tool = board.tool();
+    let identity = tool.identity().clone();
+    assert_eq!(identity.tick_hz, 1000);
+    assert!(identity.can_set() && identity.can_record(), "{identity:?}");
+    let status = tool.status().unwrap();
+    assert!(!status.is_enabled, "{status:?}");
+    assert_eq!(status.fault_number, 0, "{status:?}");
+    assert_eq!(
+        board.with(|axis| leadscrew_emulator::Emulator::resets(axis.part())),
+        0
+    );
+    let counters = tool.tick_counters().unwrap();
+    assert!(counters.ticks > 10, "{counters:?}");
+    assert_eq!((counters.late, counters.lost_records), (0, 0));
+}
