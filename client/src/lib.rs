@@ -28,7 +28,7 @@ mod scale;
 mod status;
 
 pub use axis::{
-    Axis, ExperimentPhase, ExperimentStatus, FaultPage, Kind, Learned, LearningPhase,
+    Axis, ExperimentPhase, ExperimentStatus, FaultPage, Kind, LastReset, Learned, LearningPhase,
     LearningStatus, Live, Parameter, Records, Samples, ScopePhase, ScopeStatus, Stored,
     TickCounters, Value,
 };

@@ -296,5 +296,24 @@ messages! {
             /// Bytes of its image.
             length: u32,
         }
+        /// Why the firmware was last started anew without being asked to, since the power came.
+        Reset = 17 {
+            /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another.
+            reason: u8,
+            /// Such starts since the power came.
+            resets: u32,
+            /// Of a panic the line, of a hard fault the address of the instruction, of late ticks the first one; else 0.
+            place: u32,
+            /// Of a panic the FNV-1a of the file's whole path, of a hard fault where it was called from; else 0.
+            origin: u32,
+            /// Of a hard fault its CFSR; else 0.
+            cfsr: u32,
+            /// Of a hard fault its HFSR; else 0.
+            hfsr: u32,
+            /// Of a hard fault the address of the access, if CFSR says that it is valid; else 0.
+            address: u32,
+            /// Of a panic the end of the file's path; else empty.
+            file: &'a str,
+        }
     }
 }

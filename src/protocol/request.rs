@@ -257,6 +257,8 @@ messages! {
         SaveMap = 54 {}
         /// Ends a run of the learning that is complete and adds it to those before, while the axis stands: it may take a second.
         EndRun = 55 {}
+        /// Asks why the firmware was last started anew without being asked to: [`Reset`](super::reply::Reply::Reset).
+        LastReset = 56 {}
     }
 }
 
@@ -310,6 +312,7 @@ impl Request<'_> {
                 | Self::Parameter { .. }
                 | Self::FaultPage { .. }
                 | Self::Counters { .. }
+                | Self::LastReset { .. }
                 | Self::Stored { .. }
                 | Self::ReadStored { .. }
                 | Self::Experiment { .. }

@@ -20,6 +20,7 @@ use crate::axis_control::{self, What};
 use crate::captures::CaptureReceiver;
 use crate::queues::LinkEnds;
 use crate::report::Report;
+use crate::safe_state::record::Record;
 use crate::store::{Interlock, Store};
 use crate::tick::Counters;
 
@@ -56,6 +57,8 @@ pub(super) struct Bench<F: NorFlash> {
     pub stream_ticket: Option<Ticket>,
     pub next_ticket: Ticket,
     pub wants_restart: bool,
+    /// Why the firmware runs anew.
+    pub reset: Record,
 }
 
 impl<F: NorFlash> Bench<F> {
@@ -150,6 +153,7 @@ impl<F: NorFlash> Port for Bench<F> {
         match *request {
             Request::FaultPage {} => say(&self.fault_page()),
             Request::Counters {} => say(&self.counts()),
+            Request::LastReset {} => say(&self.last_reset()),
             Request::Restart {} => self.wants_restart = true,
             Request::SaveParameters {} => self.save_parameters(settings)?,
             Request::Stored { kind } => say(&self.stored(kind)?),

@@ -134,6 +134,7 @@ impl<F: NorFlash> Boot<F> {
             stream_ticket: None,
             next_ticket: 0,
             wants_restart: false,
+            reset: Default::default(),
         };
         let loaded = Loaded {
             report: found.report,

@@ -5,6 +5,7 @@ use leadscrew::protocol::reply::Reply;
 use leadscrew::supervisor::FirstFault;
 
 use super::bench::Bench;
+use crate::safe_state::reason::Reason;
 
 impl<F: NorFlash> Bench<F> {
     pub fn fault_page(&self) -> Reply<'static> {
@@ -44,6 +45,32 @@ impl<F: NorFlash> Bench<F> {
             setpoint_velocity: context.setpoint_velocity.to_bits(),
             following_error: context.following_error.to_bits(),
             command: context.command.to_bits(),
+        }
+    }
+
+    pub fn last_reset(&self) -> Reply<'_> {
+        let (mut place, mut origin, mut file) = (0, 0, "");
+        let [mut cfsr, mut hfsr, mut address] = [0; 3];
+        match &self.reset.reason {
+            Some(Reason::Panic(panic)) => {
+                (place, origin, file) = (panic.line, panic.hash, panic.file());
+            }
+            Some(Reason::HardFault(fault)) => {
+                (place, origin) = (fault.pc, fault.lr);
+                [cfsr, hfsr, address] = [fault.cfsr, fault.hfsr, fault.address];
+            }
+            Some(Reason::LateTicks { tick }) => place = *tick,
+            Some(Reason::Watchdog) | None => {}
+        }
+        Reply::Reset {
+            reason: self.reset.reason.as_ref().map_or(0, Reason::number),
+            resets: self.reset.resets,
+            place,
+            origin,
+            cfsr,
+            hfsr,
+            address,
+            file,
         }
     }
 

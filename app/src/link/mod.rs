@@ -30,6 +30,7 @@ use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::service::{Service, Ticket};
 
 use crate::report::Report;
+use crate::safe_state::record::Record as ResetRecord;
 use bench::Bench;
 
 /// What passes a frame on; false where there was no room for it.
@@ -44,6 +45,11 @@ pub struct Link<F: NorFlash> {
 }
 
 impl<F: NorFlash> Link<F> {
+    /// Takes what a board found of the last reset; who asks for it is told.
+    pub const fn set_reset(&mut self, reset: ResetRecord) {
+        self.bench.reset = reset;
+    }
+
     /// Takes the report of a tick.
     pub fn report(&mut self, report: &Report, send: &mut Send<'_>) {
         let Self { service, bench, .. } = self;

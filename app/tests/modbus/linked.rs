@@ -3,11 +3,16 @@
 use leadscrew::axis::Inputs;
 use leadscrew::compensation::table::{POINTS, Stretch};
 use leadscrew::hal::Capture;
+use leadscrew::protocol::client::{Answer, Client};
+use leadscrew::protocol::reply::Reply;
+use leadscrew::protocol::request::Request;
 use leadscrew::protocol::service::Identity;
 use leadscrew_app::axis_control::{AxisControl, Inlet};
 use leadscrew_app::link::{Boot, Link, Memory};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
+use leadscrew_app::safe_state::reason::{HardFault, Place, Reason};
+use leadscrew_app::safe_state::record::{Record, ResetFlags};
 use leadscrew_app::store::Interlock;
 use leadscrew_app::tick::{Control as _, Counters};
 
@@ -164,4 +169,95 @@ fn what_was_not_saved_is_gone_after_a_power_cycle() {
     let mut board = on(&mut flash);
     let factory = settings().axis.motion.max_feed_mm_per_min;
     assert_eq!(number(&board.read(feed, 4)), factory);
+}
+
+/// Asks on the axis' own line, and gives what was understood of the answers.
+fn ask<R>(
+    board: &mut Board<'_>,
+    tool: &mut Client,
+    request: &Request<'_>,
+    mut of: impl FnMut(Reply<'_>) -> Option<R>,
+) -> Option<R> {
+    let frame = tool.request(request).unwrap().to_vec();
+    let mut sent = Vec::new();
+    board.link.receive(&frame, &mut |bytes| {
+        sent.extend_from_slice(bytes);
+        true
+    });
+    let mut found = None;
+    tool.receive(&sent, |answer| {
+        if let Answer::Reply(_, reply) = answer {
+            found = of(reply).or(found.take());
+        }
+    });
+    found
+}
+
+#[test]
+fn why_it_was_started_anew_is_told_on_the_axis_own_line() {
+    let fault = HardFault {
+        pc: 0x0801_2344,
+        lr: 0x0801_0001,
+        cfsr: 0x8200,
+        hfsr: 0x4000_0000,
+        address: 0xdead_beec,
+    };
+    let panic = Place::new("app/src/tick.rs", 42);
+    let cases = [
+        (None, (0, 0, 0, String::new())),
+        (
+            Some(Reason::Panic(panic)),
+            (1, 1, 42, "app/src/tick.rs".into()),
+        ),
+        (
+            Some(Reason::HardFault(fault)),
+            (2, 1, fault.pc, String::new()),
+        ),
+        (
+            Some(Reason::LateTicks { tick: 9 }),
+            (4, 1, 9, String::new()),
+        ),
+    ];
+    for (reason, expected) in cases {
+        let mut flash = Flash::new(16);
+        let mut board = on(&mut flash);
+        board.tick(0);
+        let kept = Record {
+            reason,
+            ..Record::default()
+        };
+        let flags = ResetFlags {
+            watchdog: reason.is_some(),
+            power: false,
+        };
+        board
+            .link
+            .set_reset(Record::after_reset(&kept.words(), flags));
+        let mut tool = Client::new();
+        let hello = Request::Hello {
+            protocol: leadscrew::protocol::VERSION,
+            nonce: 5,
+        };
+        ask(&mut board, &mut tool, &hello, |_| Some(()));
+        let told = ask(
+            &mut board,
+            &mut tool,
+            &Request::LastReset {},
+            |reply| match reply {
+                Reply::Reset {
+                    reason,
+                    resets,
+                    place,
+                    cfsr,
+                    file,
+                    ..
+                } => {
+                    assert_eq!(cfsr != 0, reason == 2);
+                    Some((reason, resets, place, file.to_owned()))
+                }
+                _ => None,
+            },
+        );
+        assert_eq!(told, Some(expected));
+    }
 }

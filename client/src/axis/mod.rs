@@ -16,7 +16,7 @@ pub use live::Live;
 pub use parameters::{Parameter, Value};
 pub use records::{Records, Samples};
 pub use scope::{ScopePhase, ScopeStatus};
-pub use store::{FaultPage, Kind, Stored, TickCounters};
+pub use store::{FaultPage, Kind, LastReset, Stored, TickCounters};
 
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;

@@ -141,6 +141,48 @@ impl TickCounters {
     }
 }
 
+/// Why the firmware was last started anew without being asked to, and how often since the power came.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LastReset {
+    /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another.
+    pub reason: u8,
+    /// Such starts since the power came.
+    pub resets: u32,
+    /// Of a panic the line, of a hard fault the address of the instruction, of late ticks the first one.
+    pub place: u32,
+    /// Of a panic the FNV-1a of the file's whole path, of a hard fault where it was called from.
+    pub origin: u32,
+    /// Of a hard fault CFSR, HFSR and the address of the access.
+    pub status: [u32; 3],
+    /// Of a panic the end of the file's path.
+    pub file: String,
+}
+
+impl LastReset {
+    fn of(reply: &Reply<'_>) -> Option<Self> {
+        match *reply {
+            Reply::Reset {
+                reason,
+                resets,
+                place,
+                origin,
+                cfsr,
+                hfsr,
+                address,
+                file,
+            } => Some(Self {
+                reason,
+                resets,
+                place,
+                origin,
+                status: [cfsr, hfsr, address],
+                file: file.to_owned(),
+            }),
+            _ => None,
+        }
+    }
+}
+
 /// What may be saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -180,6 +222,14 @@ impl Axis {
     /// Of a lost axis.
     pub fn tick_counters(&mut self) -> Result<TickCounters, Error> {
         self.query(&Request::Counters {}, TickCounters::of)
+    }
+
+    /// Why its firmware was last started anew without being asked to.
+    ///
+    /// # Errors
+    /// Of a lost axis.
+    pub fn last_reset(&mut self) -> Result<LastReset, Error> {
+        self.query(&Request::LastReset {}, LastReset::of)
     }
 
     /// Saves the parameters in force, while the axis is off.

@@ -1,6 +1,6 @@
 //! `leadscrew counters`: what tick and link counted.
 
-use leadscrew_client::{Axis, Losses};
+use leadscrew_client::{Axis, LastReset, Losses};
 use serde::Serialize;
 
 use crate::cli::JsonArgs;
@@ -19,6 +19,8 @@ struct Report {
     indexes: u32,
     index_count: i64,
     index_distance: i64,
+    resets: u32,
+    last_reset: Option<String>,
     dropped_by_axis: Side,
     dropped_here: Side,
 }
@@ -81,6 +83,7 @@ impl Side {
 pub fn run(axis: &mut Axis, args: &JsonArgs) -> Result<(), CommandError> {
     let counted = axis.tick_counters()?;
     let link = axis.link_statistics()?;
+    let reset = axis.last_reset()?;
     let report = Report {
         ticks: counted.ticks,
         late_ticks: counted.late,
@@ -91,6 +94,8 @@ pub fn run(axis: &mut Axis, args: &JsonArgs) -> Result<(), CommandError> {
         indexes: counted.indexes,
         index_count: counted.index_count,
         index_distance: counted.index_distance,
+        resets: reset.resets,
+        last_reset: cause(&reset),
         dropped_by_axis: Side::of(link.axis),
         dropped_here: Side::of(link.here),
     };
@@ -101,6 +106,29 @@ pub fn run(axis: &mut Axis, args: &JsonArgs) -> Result<(), CommandError> {
     }
 }
 
+/// What made the firmware start anew; nothing if it was not made to.
+fn cause(reset: &LastReset) -> Option<String> {
+    let LastReset {
+        reason,
+        place,
+        origin,
+        status: [cfsr, hfsr, address],
+        file,
+        ..
+    } = reset;
+    Some(match reason {
+        0 => return None,
+        1 => format!("panic in …{file} line {place}"),
+        2 => format!(
+            "hard fault at {place:#010x}, called from {origin:#010x} (CFSR {cfsr:#010x}, HFSR {hfsr:#010x}, address \
+             {address:#010x})"
+        ),
+        3 => "watchdog: a tick hung, or none came".into(),
+        4 => format!("watchdog: ticks ended too late from tick {place} on"),
+        other => format!("reason {other}, of a later version"),
+    })
+}
+
 impl Report {
     fn to_text(&self) -> String {
         format!(
@@ -109,6 +137,7 @@ impl Report {
              worst tick       start {}, end {} clocks of its timer after it was due\n\
              lost records     {}\n\
              indexes          {}, the last at count {}, {} d from the one before it\n\
+             started anew     {} times since the power came{}\n\
              link, the axis   dropped {}\n\
              link, this tool  dropped {}\n",
             self.ticks,
@@ -120,6 +149,8 @@ impl Report {
             self.indexes,
             self.index_count,
             self.index_distance,
+            self.resets,
+            (self.last_reset.as_ref()).map_or(String::new(), |cause| format!(", last: {cause}")),
             self.dropped_by_axis.to_text(),
             self.dropped_here.to_text(),
         )
