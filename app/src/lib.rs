@@ -30,3 +30,4 @@ pub mod safe_state;
 pub mod store;
 pub mod telemetry;
 pub mod tick;
+pub mod tick_period;

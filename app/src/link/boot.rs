@@ -4,24 +4,26 @@ use core::ops::Range;
 
 use embedded_storage::nor_flash::NorFlash;
 use leadscrew::axis::{Axis, Outputs};
+use leadscrew::calibration::Work;
 use leadscrew::capture::Unwrapper;
 use leadscrew::compensation::table::{POINTS, ScrewPoint, ScrewTable, Stretch};
 use leadscrew::encoder_map::EncoderMap;
-use leadscrew::params::ParamError;
+use leadscrew::params::{AxisConfig, ParamError};
 use leadscrew::protocol::service::{Identity, Seen, Service};
 use leadscrew::settings::Settings;
 
 use super::Link;
 use super::bench::Bench;
-use super::memory::{Lent, Memory};
+use super::memory::{Lent, MapPlaces};
 use crate::axis_control::AxisControl;
+use crate::captures::{EDGES, WORDS};
 use crate::queues::Queues;
 use crate::report::Report as TickReport;
 use crate::store::{Interlock, Kind, Report, SET_BYTES, Source, Store};
 use crate::tick::Counters;
 
 /// What a board gives for its axis and link.
-pub struct Boot<F> {
+pub struct Boot<F, const CAPTURED: usize = WORDS, const LOOKED_AT: usize = EDGES> {
     /// The flash of the store.
     pub flash: F,
     /// Where in it.
@@ -31,9 +33,11 @@ pub struct Boot<F> {
     /// What it says of itself.
     pub identity: Identity,
     /// Memory of the queues.
-    pub queues: &'static mut Queues,
-    /// Memory to work with.
-    pub memory: &'static mut Memory,
+    pub queues: &'static mut Queues<CAPTURED, LOOKED_AT>,
+    /// Memory to work with; [`super::WorkMemory`] is one.
+    pub work: Work<'static>,
+    /// Memory of encoder maps.
+    pub maps: MapPlaces,
     /// Memory of the screw table in use.
     pub screw: &'static mut [Stretch; POINTS.1],
     /// Keeps the axis off while the store is written.
@@ -55,25 +59,43 @@ pub struct Loaded {
     pub is_storeless: bool,
 }
 
-impl<F: NorFlash> Boot<F> {
+impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURED, LOOKED_AT> {
     /// Loads what is stored, and makes the axis of it. An axis whose parameters are not whole is not enabled before they
     /// were saved anew.
     ///
     /// # Errors
     /// [`ParamError`] if not even the factory's parameters make an axis.
     pub fn start<B>(self) -> Result<(AxisControl<B>, Link<F>, Loaded), ParamError> {
+        let mut control = None;
+        let (link, loaded) = self.start_with(|made, _| control = Some(made))?;
+        // It was given before the link was made.
+        let control = control.unwrap_or_else(|| unreachable!());
+        Ok((control, link, loaded))
+    }
+
+    /// The same, where the stack has no room for the axis and the link at once: `take` puts the axis where it belongs before
+    /// the link is made. It is told the settings, too.
+    ///
+    /// # Errors
+    /// [`ParamError`] if not even the factory's parameters make an axis; then nothing was given.
+    #[inline(never)]
+    pub fn start_with<B>(
+        self,
+        take: impl FnOnce(AxisControl<B>, &Settings),
+    ) -> Result<(Link<F>, Loaded), ParamError> {
         let Self {
             flash,
             range,
             factory,
             identity,
             queues,
-            memory,
+            work,
+            maps,
             screw,
             interlock,
             counters,
         } = self;
-        let (work, mut map_places) = memory.split();
+        let mut map_places = maps;
         let store = interlock
             .permit(&Outputs::default())
             .ok()
@@ -98,16 +120,20 @@ impl<F: NorFlash> Boot<F> {
                 (settings.validate()?, false)
             }
         };
-        let mut axis = Axis::new(config);
-        axis.set_map(
-            found
-                .map
-                .and_then(|image| EncoderMap::from_bytes(image).ok()),
-        );
-        let has_screw = found.screw.is_some() && axis.set_screw_table(found.screw).is_ok();
-        axis.supervisor_mut()
-            .set_store_corrupt(!(is_whole && is_valid));
         let (tick, captures_out, ends, captures) = queues.split();
+        let loaded = Loaded {
+            report: found.report,
+            has_map: found.map.is_some(),
+            has_screw: found.screw.is_some(),
+            is_storeless: store.is_none(),
+        };
+        let has_screw = give(
+            &config,
+            &found,
+            !(is_whole && is_valid),
+            |axis| AxisControl::new(axis, tick, captures_out, interlock),
+            |control| take(control, &settings),
+        );
         let service = Service::new(identity, &settings)?;
         let bench = Bench {
             ends,
@@ -136,20 +162,32 @@ impl<F: NorFlash> Boot<F> {
             wants_restart: false,
             reset: Default::default(),
         };
-        let loaded = Loaded {
-            report: found.report,
-            has_map: found.map.is_some(),
-            has_screw,
-            is_storeless: bench.store.is_none(),
-        };
-        let control = AxisControl::new(axis, tick, captures_out, interlock);
         let link = Link {
             service,
             bench,
             asked: None,
         };
-        Ok((control, link, loaded))
+        let loaded = Loaded { has_screw, ..loaded };
+        Ok((link, loaded))
     }
+}
+
+/// Makes the axis and gives it away; true if it has a screw table. On a frame of its own: an axis is large.
+#[inline(never)]
+fn give<B>(
+    config: &AxisConfig,
+    found: &Found,
+    is_corrupt: bool,
+    control: impl FnOnce(Axis<'static>) -> AxisControl<B>,
+    take: impl FnOnce(AxisControl<B>),
+) -> bool {
+    let mut axis = Axis::new(*config);
+    let map = found.map;
+    axis.set_map(map.and_then(|image| EncoderMap::from_bytes(image).ok()));
+    let has_screw = found.screw.is_some() && axis.set_screw_table(found.screw).is_ok();
+    axis.supervisor_mut().set_store_corrupt(is_corrupt);
+    take(control(axis));
+    has_screw
 }
 
 /// What a store gave.
@@ -165,7 +203,7 @@ impl Found {
         &mut self,
         store: &mut Store<F>,
         lent: &mut Lent,
-        places: &mut super::memory::MapPlaces,
+        places: &mut MapPlaces,
         screw: &'static mut [Stretch; POINTS.1],
     ) {
         let Some(bytes) = lent.bytes() else {
