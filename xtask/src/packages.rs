@@ -10,6 +10,7 @@ pub const HOST: &[&str] = &[
     "leadscrew-client",
     "leadscrew-host",
     QEMU,
+    "leadscrew-emulator",
     "xtask",
 ];
 
@@ -17,7 +18,7 @@ pub const HOST: &[&str] = &[
 pub const QEMU: &str = "leadscrew-qemu";
 
 /// Board crates with the target of each; one cargo call a board.
-pub const BOARDS: &[(&str, &str)] = &[("board-mps2-an386", TARGET)];
+pub const BOARDS: &[(&str, &str)] = &[("board-mps2-an386", TARGET), ("board-stm32f4", TARGET)];
 
 /// The target of all boards so far.
 pub const TARGET: &str = "thumbv7em-none-eabihf";

@@ -167,7 +167,10 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
             bench,
             asked: None,
         };
-        let loaded = Loaded { has_screw, ..loaded };
+        let loaded = Loaded {
+            has_screw,
+            ..loaded
+        };
         Ok((link, loaded))
     }
 }

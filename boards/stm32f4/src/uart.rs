@@ -13,9 +13,9 @@ use embassy_stm32::pac::usart::Usart;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::clocks::APB2_HZ;
+use crate::gpio;
 use crate::isr_cell::IsrCell;
 use crate::pins::{self, Pin};
-use crate::gpio;
 
 /// Bytes that may have come and not been read, less one: 11 ms of a line of 921 600 bits a second.
 const RECEIVED: usize = 1024;
@@ -133,7 +133,11 @@ impl Uart {
 
     fn send_next(&self) {
         let registers = self.registers;
-        match self.to_send.with(|queue| queue.dequeue()).flatten() {
+        match self
+            .to_send
+            .with(heapless::spsc::Consumer::dequeue)
+            .flatten()
+        {
             Some(byte) => {
                 self.drive(true);
                 registers.dr().write(|w| w.set_dr(byte.into()));
