@@ -12,6 +12,27 @@ use leadscrew::supervisor::FirstFault;
 use crate::axis_control::Request;
 use crate::captures::{CaptureReceiver, CaptureSender, WORDS};
 
+/// As the queue's own, for the tick: the compiler does not know that the length of a queue, by which heapless divides, is
+/// never zero, and without the question there would be a panic in the tick.
+#[inline]
+pub(crate) fn enqueue<T>(producer: &mut Producer<'_, T>, value: T) -> Result<(), T> {
+    if producer.capacity() == NO_PLACES {
+        return Err(value);
+    }
+    producer.enqueue(value)
+}
+
+/// As the queue's own, for the tick: see [`enqueue`].
+#[inline]
+pub(crate) fn dequeue<T>(consumer: &mut Consumer<'_, T>) -> Option<T> {
+    if consumer.capacity() == NO_PLACES {
+        return None;
+    }
+    consumer.dequeue()
+}
+
+/// Capacity of a queue without memory: one less than its length.
+const NO_PLACES: usize = usize::MAX;
 /// Requests that may wait.
 const REQUESTS: usize = 8;
 /// Outcomes that may wait: more than there are requests.
@@ -39,12 +60,13 @@ pub struct Queues {
     samples: Queue<Sample, SAMPLES>,
     captures: Queue<u32, WORDS>,
     refused: AtomicU32,
-    /// The tick whose report thread mode took last; [`NO_BEAT`] before the first one.
+    /// One more than the tick whose report thread mode took last; [`NO_BEAT`] before the first one.
     beat: AtomicU32,
 }
 
 /// Thread mode has taken no report yet: it has no link, or has not begun.
-const NO_BEAT: u32 = u32::MAX;
+// All zero, so that a static of queues takes no flash.
+const NO_BEAT: u32 = 0;
 
 /// What the tick holds of them.
 pub struct TickEnds {
@@ -145,7 +167,7 @@ impl LinkEnds {
     /// Tells the tick that thread mode lives: it has taken the report of `tick`.
     pub fn beat(&self, tick: u32) {
         // One tick in 2³² is told late.
-        self.beat.store(tick.min(NO_BEAT - 1), Ordering::Relaxed);
+        self.beat.store(tick.saturating_add(1), Ordering::Relaxed);
     }
 }
 
@@ -154,7 +176,7 @@ impl TickEnds {
     pub(crate) fn behind(&self, tick: u32) -> u32 {
         match self.beat.load(Ordering::Relaxed) {
             NO_BEAT => 0,
-            beat => tick.wrapping_sub(beat),
+            beat => tick.wrapping_sub(beat.wrapping_sub(1)),
         }
     }
 

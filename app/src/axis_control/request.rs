@@ -7,7 +7,7 @@ use leadscrew::protocol::service::Ticket;
 use leadscrew::scope::Stream;
 
 use super::AxisControl;
-use crate::queues::Outcome;
+use crate::queues::{Outcome, dequeue, enqueue};
 
 /// What thread mode asks for, and when.
 #[derive(Debug)]
@@ -60,12 +60,12 @@ pub enum What {
 impl<B> AxisControl<B> {
     /// Takes what is due; the queues bound how much that can be.
     pub(super) fn take_requests(&mut self) {
-        while let Some(config) = self.ends.configs.dequeue() {
+        while let Some(config) = dequeue(&mut self.ends.configs) {
             let (ticket, config) = config;
             let result = self.axis.reconfigure(config).map_err(Refusal::from);
             self.answer(ticket, result);
         }
-        if let Some(scope) = self.ends.scopes.dequeue() {
+        if let Some(scope) = dequeue(&mut self.ends.scopes) {
             self.scope = Some(scope);
         }
         while let Some(next) = self.ends.requests.peek()
@@ -108,14 +108,14 @@ impl<B> AxisControl<B> {
                     Ok(())
                 }
             };
-            let _ = self.ends.requests.dequeue();
+            let _ = dequeue(&mut self.ends.requests);
             self.answer(ticket, result);
         }
     }
 
     fn answer(&mut self, ticket: Ticket, result: Result<(), Refusal>) {
         let outcome = Outcome { ticket, result };
-        if self.ends.outcomes.enqueue(outcome).is_err() {
+        if enqueue(&mut self.ends.outcomes, outcome).is_err() {
             self.ends.note_lost_outcome(result);
         }
     }
