@@ -4,6 +4,7 @@
 #![no_main]
 
 use core::cell::UnsafeCell;
+use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::ptr::{read_volatile, write_volatile};
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -41,10 +42,12 @@ const OUTSIDE: *mut u32 = 0x4002_8000 as *mut u32;
 #[unsafe(link_section = ".vector_table.interrupts")]
 pub static __INTERRUPTS: [usize; 1] = [0];
 
-struct Shared(UnsafeCell<Option<Runtime<AxisControl<Board>>>>);
+/// Not an option: that none is there is no zero, and would take flash.
+struct Shared(UnsafeCell<MaybeUninit<Runtime<AxisControl<Board>>>>);
+
 // SAFETY: filled before `READY`, then only the tick uses it.
 unsafe impl Sync for Shared {}
-static TICK: Shared = Shared(UnsafeCell::new(None));
+static TICK: Shared = Shared(UnsafeCell::new(MaybeUninit::uninit()));
 static READY: AtomicBool = AtomicBool::new(false);
 static COUNTERS: Counters = Counters::new();
 static INTERLOCK: Interlock = Interlock::new();
@@ -172,7 +175,7 @@ fn main() -> ! {
     let (producer, mut reports) = RECORDS.take().split();
     let runtime = Runtime::new(control, producer, &COUNTERS, 1000);
     // SAFETY: `READY` is not set yet, so the tick keeps off.
-    unsafe { *TICK.0.get() = Some(runtime) };
+    unsafe { (*TICK.0.get()).write(runtime) };
     READY.store(true, Ordering::Release);
     let Ok(config) = Config::serial(1, 115_200) else {
         stop_here()
@@ -221,10 +224,8 @@ fn SysTick() {
     if !READY.load(Ordering::Acquire) {
         return;
     }
-    // SAFETY: `READY` is set: it is the tick's alone.
-    let Some(runtime) = (unsafe { &mut *TICK.0.get() }) else {
-        return;
-    };
+    // SAFETY: `READY` is set: it is there, and the tick's alone.
+    let runtime = unsafe { (*TICK.0.get()).assume_init_mut() };
     let board = Board([0; 64].map(|_: u32| outside()));
     let report = runtime.run(&Timer, Some(&board));
     put(report.record.drive().0.to_bits() as u32);
