@@ -2,6 +2,13 @@
 
 use crate::estimator::saturate;
 
+/// `value` between `low` and `high`; `high` where they are the wrong way round, at which `clamp` panics: for limits that
+/// the compiler cannot compare.
+#[inline]
+pub(crate) fn within_or_high<T: Ord>(value: T, low: T, high: T) -> T {
+    value.max(low).min(high)
+}
+
 /// A right shift by s, 1 to 31, as numbers: a product costs less than a shift of 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Narrowing {

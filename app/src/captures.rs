@@ -11,6 +11,8 @@
 use heapless::spsc::{Consumer, Producer};
 use leadscrew::hal::{Capture, Latch};
 
+use crate::queues::enqueue;
+
 /// Words of the queue: three ticks of 1 200 edges.
 pub const WORDS: usize = 4096;
 /// Most edges of a capture, where there is room.
@@ -63,7 +65,7 @@ impl CaptureSender {
         let edges = older.len() + newer.len();
         let index = capture.index.map(|latch| [latch.count, latch.time]);
         let needed = HEAD + 2 + edges;
-        if edges > self.edges || self.words.capacity() - self.words.len() < needed {
+        if edges > self.edges || room(&self.words) < needed {
             self.is_lossy = true;
             return;
         }
@@ -81,9 +83,19 @@ impl CaptureSender {
         let words = head.iter().chain(index).chain(older).chain(newer);
         words.for_each(|word| {
             // There is room: it was counted above.
-            let _ = self.words.enqueue(*word);
+            let _ = enqueue(&mut self.words, *word);
         });
     }
+}
+
+/// Words that find room.
+fn room(words: &Producer<'_, u32>) -> usize {
+    let capacity = words.capacity();
+    // A queue without memory: see `queues::enqueue`.
+    if capacity == usize::MAX {
+        return 0;
+    }
+    capacity - words.len()
 }
 
 /// Thread mode's end. The tick preempts thread mode and not the other way, so that a capture is always there as a whole.

@@ -12,6 +12,27 @@ use leadscrew::supervisor::FirstFault;
 use crate::axis_control::Request;
 use crate::captures::{CaptureReceiver, CaptureSender, EDGES, WORDS};
 
+/// As the queue's own, for the tick: the compiler does not know that the length of a queue, by which heapless divides, is
+/// never zero, and without the question there would be a panic in the tick.
+#[inline]
+pub(crate) fn enqueue<T>(producer: &mut Producer<'_, T>, value: T) -> Result<(), T> {
+    if producer.capacity() == NO_PLACES {
+        return Err(value);
+    }
+    producer.enqueue(value)
+}
+
+/// As the queue's own, for the tick: see [`enqueue`].
+#[inline]
+pub(crate) fn dequeue<T>(consumer: &mut Consumer<'_, T>) -> Option<T> {
+    if consumer.capacity() == NO_PLACES {
+        return None;
+    }
+    consumer.dequeue()
+}
+
+/// Capacity of a queue without memory: one less than its length.
+const NO_PLACES: usize = usize::MAX;
 /// Requests that may wait.
 const REQUESTS: usize = 8;
 /// Outcomes that may wait: more than there are requests.
@@ -158,7 +179,7 @@ impl TickEnds {
     pub(crate) fn behind(&self, tick: u32) -> u32 {
         match self.beat.load(Ordering::Relaxed) {
             NO_BEAT => 0,
-            beat => tick.wrapping_sub(beat - 1),
+            beat => tick.wrapping_sub(beat.wrapping_sub(1)),
         }
     }
 

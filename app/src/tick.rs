@@ -4,6 +4,8 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::Producer;
 
+use crate::queues::enqueue;
+
 /// What the tick computes: the axis, or in a test something simpler.
 pub trait Control {
     /// What the board saw up to this tick.
@@ -146,7 +148,7 @@ impl<C: Control> Runtime<C> {
             add_one(&self.counters.late);
             self.control.missed()
         };
-        if self.records.enqueue(record).is_err() {
+        if enqueue(&mut self.records, record).is_err() {
             add_one(&self.counters.lost_records);
         }
         self.was_in_time = self.check_end(timer) && inputs.is_some();

@@ -3,6 +3,7 @@
 //! While static friction holds the axis it grows without effect. What a motion starts with is therefore less by that
 //! friction's level.
 
+use crate::narrowing::within_or_high;
 use crate::units::Command;
 
 /// Fractional bits of the integral beyond those of a command.
@@ -48,7 +49,7 @@ impl State {
     /// Takes over `command`, Q.30.
     pub fn take(&mut self, command: i32) {
         let most = Command::ONE.to_bits();
-        let held = command.clamp(most.wrapping_neg(), most);
+        let held = within_or_high(command, most.wrapping_neg(), most);
         self.add(i64::from(held).wrapping_shl(INTEGRAL_SHIFT));
     }
 
@@ -57,7 +58,7 @@ impl State {
     pub fn give_way(&mut self, command: i32) {
         if command != 0 {
             let most = self.value();
-            self.take(command.clamp(most.min(0), most.max(0)).wrapping_neg());
+            self.take(within_or_high(command, most.min(0), most.max(0)).wrapping_neg());
         }
     }
 
@@ -67,7 +68,7 @@ impl State {
         let held = i64::from(held).wrapping_shl(INTEGRAL_SHIFT);
         self.sum = self
             .sum
-            .wrapping_sub(self.sum.clamp(held.wrapping_neg(), held));
+            .wrapping_sub(within_or_high(self.sum, held.wrapping_neg(), held));
         self.at_rest = self.sum;
     }
 

@@ -39,6 +39,7 @@ mod weights;
 pub use config::Config;
 
 use crate::estimator::Estimate;
+use crate::narrowing::within_or_high;
 use crate::output::ActiveLimits;
 use crate::setpoint::Setpoint;
 use crate::units::{Command, Position};
@@ -377,7 +378,7 @@ impl Controller {
         };
         let law = law.saturating_add(self.rest.push(&self.config.rest, &standing));
         let withheld = law.saturating_sub(bias);
-        (law, withheld.clamp(held.wrapping_neg(), held))
+        (law, within_or_high(withheld, held.wrapping_neg(), held))
     }
 
     /// The feedback part through the filters, and what passes by them.

@@ -12,6 +12,7 @@
 //! The second change of the error's side doubles the band, and so does every fourth push, four times at most, until the next
 //! motion: no swing goes on. Each change of side also halves the rise, three times at most.
 
+use crate::narrowing::within_or_high;
 use crate::units::{Command, RangeError, Velocity, checked};
 
 /// What rest is made of; lengths in d, times in ticks, the rest in fractions of full command.
@@ -260,7 +261,7 @@ impl State {
                 .saturating_sub(standing.law),
             Phase::Settling => {
                 let half = standing.held.wrapping_shr(1);
-                standing.law.clamp(half.wrapping_neg(), half).wrapping_neg()
+                within_or_high(standing.law, half.wrapping_neg(), half).wrapping_neg()
             }
         }
     }

@@ -8,6 +8,7 @@ use super::Setpoint;
 use super::follower::{self, Follower};
 use super::profile::Limits;
 use super::ratio::Factor;
+use crate::narrowing::within_or_high;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
 use crate::units::{AxisScale, Command, Position, RangeError, Velocity};
@@ -75,7 +76,7 @@ impl Config {
         };
         let velocity = self.scale.of(beyond);
         let largest = i64::from(self.largest);
-        Velocity::from_bits(velocity.clamp(largest.wrapping_neg(), largest) as i32)
+        Velocity::from_bits(within_or_high(velocity, largest.wrapping_neg(), largest) as i32)
     }
 }
 

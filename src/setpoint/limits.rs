@@ -1,5 +1,6 @@
 //! Limits of motion.
 
+use crate::narrowing::within_or_high;
 use crate::units::{Acceleration, Jerk, RangeError, Velocity, checked};
 
 /// The slowest limit of velocity: 100 LSB.
@@ -39,7 +40,7 @@ impl Limits {
     #[must_use]
     pub fn slowed(&self, velocity: Velocity) -> Self {
         Self {
-            velocity: velocity.clamp(SLOWEST.min(self.velocity), self.velocity),
+            velocity: within_or_high(velocity, SLOWEST.min(self.velocity), self.velocity),
             ..*self
         }
     }

@@ -2,13 +2,17 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod calls;
 mod command;
 mod deny;
 mod golden;
+mod image;
 mod licences;
+mod no_panic;
 mod packages;
 mod rings;
 mod setup;
+mod size;
 mod summary;
 
 use std::process::ExitCode;
@@ -19,6 +23,8 @@ usage: cargo xtask COMMAND
   test [--long]    set up, then everything CI checks, in rings; --long adds the long repeats
   qemu [WORD...]   run the axis in QEMU at 1000 and 2500 Hz; WORD goes to the guest
   bench [--bless]  count instructions in QEMU and compare with the golden table; --bless rewrites it
+  size [--bless]   bytes of the firmware's image against the golden table; --bless rewrites it
+  no-panic         prove that no panic can be reached from the control tick
   golden           write the tables under tests/golden anew, for review
   deny             check licences, sources and banned crates against deny.toml";
 
@@ -35,6 +41,9 @@ fn main() -> ExitCode {
         ["qemu", guest_words @ ..] => done(qemu(guest_words)),
         ["bench"] => done(bench::run(false)),
         ["bench", "--bless"] => done(bench::run(true)),
+        ["size"] => done(size::run(false)),
+        ["size", "--bless"] => done(size::run(true)),
+        ["no-panic"] => done(no_panic::run()),
         ["golden"] => done(golden_tables()),
         ["deny"] => done(deny::run()),
         _ => {

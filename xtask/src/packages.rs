@@ -22,3 +22,6 @@ pub const BOARDS: &[(&str, &str)] = &[("board-mps2-an386", TARGET), ("board-stm3
 
 /// The target of all boards so far.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// The board whose programs `sized` and `tick_only` stand for a board's firmware in sizes and proofs.
+pub const PROOF: &str = "board-mps2-an386";

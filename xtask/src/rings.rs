@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::command::{Call, cargo};
 use crate::packages::{BOARDS, HOST, QEMU};
 use crate::summary::Tests;
-use crate::{Result, bench, deny, setup};
+use crate::{Result, bench, deny, no_panic, setup, size};
 
 /// Asks tests that repeat something to repeat it often.
 const LONG: &str = "LEADSCREW_LONG";
@@ -49,6 +49,14 @@ const RINGS: &[Ring] = &[
     Ring {
         name: "bench",
         work: |_| bench::run(false).into(),
+    },
+    Ring {
+        name: "sizes",
+        work: |_| size::run(false).into(),
+    },
+    Ring {
+        name: "no panic",
+        work: |_| no_panic::run().into(),
     },
     Ring {
         name: "documentation",

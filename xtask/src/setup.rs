@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::Result;
 use crate::command::{Call, cargo, program, root};
 use crate::packages::TARGET;
+use crate::{Result, image};
 
 const QEMU: &str = "qemu-system-arm";
 const MBPOLL: &str = "mbpoll";
@@ -15,6 +15,7 @@ const PYMODBUS: &str = "3.16.1";
 pub fn run() -> Result<()> {
     component("clippy", || cargo(["clippy", "--version"]))?;
     component("rustfmt", || cargo(["fmt", "--version"]))?;
+    llvm_tools()?;
     target()?;
     qemu()?;
     masters();
@@ -33,6 +34,16 @@ fn component(name: &str, check: impl Fn() -> Call) -> Result<()> {
     } else {
         Err(format!("{name} is still missing after its installation"))
     }
+}
+
+/// They come with the toolchain; one whose components were taken apart may lack them.
+fn llvm_tools() -> Result<()> {
+    if image::tool_path("llvm-objdump").is_ok() {
+        return Ok(());
+    }
+    println!("installing llvm-tools");
+    or_by_hand(program("rustup", ["component", "add", "llvm-tools"]))?;
+    image::tool_path("llvm-objdump").map(|_| ())
 }
 
 fn target() -> Result<()> {

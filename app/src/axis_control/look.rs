@@ -1,5 +1,6 @@
 //! What looks at the axis after its step: scope, stream, captures, faults, indexes.
 
+use crate::queues::enqueue;
 use leadscrew::hal::Capture;
 
 use super::AxisControl;
@@ -13,7 +14,7 @@ impl<B> AxisControl<B> {
             if scope.is_over()
                 && let Some(scope) = self.scope.take()
                 // There is one scope at a time, so there is room.
-                && let Err(scope) = self.ends.scopes_back.enqueue(scope)
+                && let Err(scope) = enqueue(&mut self.ends.scopes_back, scope)
             {
                 self.scope = Some(scope);
             }
@@ -22,12 +23,12 @@ impl<B> AxisControl<B> {
             && let Some(sample) = stream.take(&self.axis)
         {
             // One that finds no room leaves a gap in the ticks.
-            let _ = self.ends.samples.enqueue(sample);
+            let _ = enqueue(&mut self.ends.samples, sample);
         }
         self.captures.send(capture);
         if let Some(first) = self.axis.supervisor().first_fault() {
             let told = (first.tick, first.later.bits());
-            if self.told_fault != Some(told) && self.ends.faults.enqueue(*first).is_ok() {
+            if self.told_fault != Some(told) && enqueue(&mut self.ends.faults, *first).is_ok() {
                 self.told_fault = Some(told);
             }
         }

@@ -7,7 +7,7 @@ use leadscrew::protocol::service::Ticket;
 use leadscrew::scope::Stream;
 
 use super::AxisControl;
-use crate::queues::Outcome;
+use crate::queues::{Outcome, dequeue, enqueue};
 
 /// What thread mode asks for, and when.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ impl<B> AxisControl<B> {
         while self.ends.configs.ready() {
             self.take_config();
         }
-        if let Some(scope) = self.ends.scopes.dequeue() {
+        if let Some(scope) = dequeue(&mut self.ends.scopes) {
             self.scope = Some(scope);
         }
         while let Some(next) = self.ends.requests.peek()
@@ -106,7 +106,7 @@ impl<B> AxisControl<B> {
                     Ok(())
                 }
             };
-            let _ = self.ends.requests.dequeue();
+            let _ = dequeue(&mut self.ends.requests);
             self.answer(ticket, result);
         }
     }
@@ -114,7 +114,7 @@ impl<B> AxisControl<B> {
     /// On a frame of its own, 12 KB: other ticks do without.
     #[inline(never)]
     fn take_config(&mut self) {
-        if let Some((ticket, config)) = self.ends.configs.dequeue() {
+        if let Some((ticket, config)) = dequeue(&mut self.ends.configs) {
             let result = self.axis.reconfigure(config).map_err(Refusal::from);
             self.answer(ticket, result);
         }
@@ -122,7 +122,7 @@ impl<B> AxisControl<B> {
 
     fn answer(&mut self, ticket: Ticket, result: Result<(), Refusal>) {
         let outcome = Outcome { ticket, result };
-        if self.ends.outcomes.enqueue(outcome).is_err() {
+        if enqueue(&mut self.ends.outcomes, outcome).is_err() {
             self.ends.note_lost_outcome(result);
         }
     }

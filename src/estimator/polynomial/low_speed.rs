@@ -2,6 +2,7 @@
 
 use crate::edges::Span;
 use crate::estimator::Variances;
+use crate::narrowing::within_or_high;
 use crate::units::{Position, Variance, Velocity};
 
 /// How long no edge has come.
@@ -62,7 +63,10 @@ impl Silence {
         } else {
             (0, most)
         };
-        (velocity.clamp(lowest, highest), velocity.clamp(least, most))
+        (
+            within_or_high(velocity, lowest, highest),
+            within_or_high(velocity, least, most),
+        )
     }
 
     /// The largest velocity after a silence of more than a tick, Q12.20 d/tick: one discrete, and half a one for displaced

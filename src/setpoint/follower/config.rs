@@ -2,6 +2,7 @@
 
 use super::stopping::Stopping;
 use super::{ACCELERATION_SHIFT, JERK_SHIFT};
+use crate::narrowing::within_or_high;
 use crate::setpoint::Setpoint;
 use crate::setpoint::profile::{Limits, STATE_FRAC};
 use crate::units::{Acceleration, Position};
@@ -119,13 +120,13 @@ impl Config {
 
     /// The acceleration to which a setpoint goes, its jerk within the limits.
     pub(super) fn announced(&self, acceleration: i64, jerk: i64) -> i64 {
-        acceleration
-            .wrapping_add(jerk)
-            .clamp(self.acceleration.wrapping_neg(), self.acceleration)
-            .clamp(
-                acceleration.wrapping_sub(self.jerk),
-                acceleration.wrapping_add(self.jerk),
-            )
+        let limit = self.acceleration;
+        let wanted = within_or_high(acceleration.wrapping_add(jerk), limit.wrapping_neg(), limit);
+        within_or_high(
+            wanted,
+            acceleration.wrapping_sub(self.jerk),
+            acceleration.wrapping_add(self.jerk),
+        )
     }
 
     /// How far ahead of `setpoint` a stop that takes over there ends, d, signed: never less than it will be in the

@@ -2,6 +2,7 @@
 
 use super::ramp::{Course, Ramp};
 use super::state::State;
+use crate::narrowing::within_or_high;
 
 /// A creep that is small enough to stop looking for a better velocity, 2⁻⁴⁸ d/tick (2e-10 d/tick).
 const FINE_CREEP: i128 = 1 << 16;
@@ -110,7 +111,7 @@ impl Search {
                 let span = rest.wrapping_sub(self.missing(&above.course));
                 // A little below the line, where the course does not go too far.
                 let share = rest as f64 / span as f64 * (1.0 - 1e-9);
-                ((width as f64 * share) as i64).clamp(1, width.wrapping_sub(1))
+                within_or_high((width as f64 * share) as i64, 1, width.wrapping_sub(1))
             } else {
                 width.wrapping_shr(1)
             };

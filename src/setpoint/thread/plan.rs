@@ -7,6 +7,7 @@
 
 use super::order::{SpindleWay, ThreadFigures, ThreadOrder, ThreadParams, ThreadRefusal};
 use super::reach::{Reach, Standing};
+use crate::estimator::saturate;
 use crate::parameter_table::ParameterTable;
 use crate::setpoint::master::Master;
 use crate::setpoint::profile::{Limits, Profile};
@@ -112,12 +113,10 @@ impl Config {
         let figures = self.figures(order, &sketch)?;
 
         let start_d = self.scale.counts_from_mm(order.start_mm);
-        let start = standing
-            .origin
-            .saturating_add(Position::saturating_from_num(start_d));
+        let start = standing.origin.saturating_add(position(start_d));
         let direction = if sketch.slope < 0.0 { -1.0 } else { 1.0 };
         let take_up = self.scale.counts_from_mm(self.params.thread_take_up_mm) * direction;
-        let take_up = start.saturating_sub(Position::saturating_from_num(take_up));
+        let take_up = start.saturating_sub(position(take_up));
 
         let part = order.angle_deg / 360.0 + f64::from(order.start) / f64::from(order.starts);
         // From the index, so that nothing is lost after many revolutions.
@@ -293,6 +292,11 @@ fn fixed(value: f64, frac: u32) -> i64 {
     libm::round(libm::ldexp(value, frac.cast_signed())) as i64
 }
 
+// Not `saturating_from_num`, which panics on NaN.
+fn position(value: f64) -> Position {
+    Position::from_bits(fixed(value, Position::FRAC_NBITS))
+}
+
 fn velocity(value: f64) -> i32 {
-    Velocity::saturating_from_num(value).to_bits()
+    saturate(fixed(value, Velocity::FRAC_NBITS))
 }
