@@ -149,8 +149,7 @@ impl LinkEnds {
     /// Tells the tick that thread mode lives: it has taken the report of `tick`.
     pub fn beat(&self, tick: u32) {
         // One tick in 2³² is told late.
-        self.beat
-            .store(tick.saturating_add(1), Ordering::Relaxed);
+        self.beat.store(tick.saturating_add(1), Ordering::Relaxed);
     }
 }
 

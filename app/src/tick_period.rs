@@ -48,7 +48,9 @@ mod tests {
 
     #[test]
     fn usual_rates_are_exact() {
-        for tick_hz in [100, 250, 400, 1_000, 2_000, 2_500, 5_000, 10_000, 20_000, 35_000, 40_000] {
+        for tick_hz in [
+            100, 250, 400, 1_000, 2_000, 2_500, 5_000, 10_000, 20_000, 35_000, 40_000,
+        ] {
             let period = TickPeriod::nearest(CLOCK_HZ, f64::from(tick_hz)).unwrap();
             assert_eq!(period.clocks() * tick_hz, CLOCK_HZ, "{period:?}");
         }

@@ -71,7 +71,9 @@ impl Stamp {
 /// Sets TIM1 up and starts it; TIM5 runs. Its interrupt has to be masked.
 pub fn start() {
     let timer = pac::TIM1;
-    timer.psc().write_value((FAST_TIMER_HZ / TIMER_HZ - 1) as u16);
+    timer
+        .psc()
+        .write_value((FAST_TIMER_HZ / TIMER_HZ - 1) as u16);
     timer.arr().write(|w| w.set_arr(u16::MAX));
     timer.ccmr_input(0).write(|w| {
         w.set_ccs(CH1, DIRECT);

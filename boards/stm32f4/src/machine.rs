@@ -9,9 +9,9 @@ use leadscrew_app::input_filter::InputFilter;
 
 use crate::encoder::{self, RING};
 use crate::latches::{self, Stamp};
+use crate::lines;
 use crate::references::References;
 use crate::ring::EDGES;
-use crate::lines;
 
 /// The machine at the tick.
 pub struct Machine {
@@ -58,9 +58,7 @@ impl Machine {
     pub fn sample(&mut self, sample: Sample, progress: Progress, missed: u16) {
         self.lines = lines::read();
         self.references.sample();
-        self.taken = self
-            .ring
-            .take(sample, progress, |index| EDGES.word(index));
+        self.taken = self.ring.take(sample, progress, |index| EDGES.word(index));
         self.missed = missed;
         self.note_index();
         self.probe = self.counted(&latches::PROBE);

@@ -122,9 +122,15 @@ fn start_steps() {
     pac::SYSCFG
         .exticr(bank)
         .modify(|w| w.set_exti(place, PORT_B));
-    pac::EXTI.rtsr(0).modify(|w| w.set_line(DIRECTION_LINE, true));
-    pac::EXTI.ftsr(0).modify(|w| w.set_line(DIRECTION_LINE, true));
-    pac::EXTI.imr(0).modify(|w| w.set_line(DIRECTION_LINE, true));
+    pac::EXTI
+        .rtsr(0)
+        .modify(|w| w.set_line(DIRECTION_LINE, true));
+    pac::EXTI
+        .ftsr(0)
+        .modify(|w| w.set_line(DIRECTION_LINE, true));
+    pac::EXTI
+        .imr(0)
+        .modify(|w| w.set_line(DIRECTION_LINE, true));
     follow_direction();
 }
 
@@ -138,9 +144,7 @@ fn follow_direction() {
 #[interrupt]
 fn EXTI9_5() {
     // A one clears. First: a further edge flags anew.
-    pac::EXTI
-        .pr(0)
-        .write(|w| w.set_line(DIRECTION_LINE, true));
+    pac::EXTI.pr(0).write(|w| w.set_line(DIRECTION_LINE, true));
     follow_direction();
 }
 

@@ -35,7 +35,10 @@ impl Ring {
     pub fn slices(&self, span: &Span<RING>) -> [&[u32]; 2] {
         span.runs().map(|run| {
             let words = self.0.get().cast::<u32>();
-            let (start, len) = (run.start.min(RING), run.len().min(RING - run.start.min(RING)));
+            let (start, len) = (
+                run.start.min(RING),
+                run.len().min(RING - run.start.min(RING)),
+            );
             // SAFETY: within the ring by the two lines above. The DMA is past these words and comes back to them only after
             // half a ring of further edges, which the tick does not last: the argument is in `leadscrew_app::edge_ring`,
             // and `hold`, on which it rests, was asked at boot (`crate::tick`): without it no span is taken.

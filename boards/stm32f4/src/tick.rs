@@ -21,9 +21,9 @@ use leadscrew_app::tick_period::TickPeriod;
 use static_cell::StaticCell;
 
 use crate::clocks::TIMER_HZ;
+use crate::converter::Output;
 use crate::isr_cell::IsrCell;
 use crate::machine::Machine;
-use crate::converter::Output;
 use crate::{encoder, flash, lines, watchdog};
 
 /// Ticks that thread mode may be behind.

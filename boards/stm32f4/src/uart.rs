@@ -13,9 +13,9 @@ use embassy_stm32::pac::usart::Usart;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::clocks::APB2_HZ;
+use crate::gpio;
 use crate::isr_cell::IsrCell;
 use crate::pins::{self, Pin};
-use crate::gpio;
 
 /// Bytes that may have come and not been read, less one: 11 ms of a line of 921 600 bits a second.
 const RECEIVED: usize = 1024;

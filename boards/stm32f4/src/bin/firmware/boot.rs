@@ -9,6 +9,7 @@ use board_stm32f4::references::References;
 use board_stm32f4::ring::EDGES;
 use board_stm32f4::tick::{self, COUNTERS, INTERLOCK};
 use board_stm32f4::{latches, memory, uart};
+use heapless::spsc::Consumer;
 use leadscrew::compensation::Stretch;
 use leadscrew::compensation::table::POINTS;
 use leadscrew::protocol::reply::{
@@ -22,10 +23,9 @@ use leadscrew_app::input_filter::{InputFilter, line_hz};
 use leadscrew_app::link::{Boot, Link, Maps};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
-use leadscrew_app::tick_period::TickPeriod;
 use leadscrew_app::report::Report;
+use leadscrew_app::tick_period::TickPeriod;
 use static_cell::{ConstStaticCell, StaticCell};
-use heapless::spsc::Consumer;
 
 use crate::factory;
 use crate::serve::{ModbusLine, Server};
@@ -97,12 +97,7 @@ fn identity() -> Identity {
             "release"
         },
         board: "stm32f4",
-        capabilities: CAN_HOME
-            | CAN_SET
-            | CAN_RECORD
-            | CAN_SAVE
-            | CAN_EXPERIMENT
-            | CAN_SCOPE,
+        capabilities: CAN_HOME | CAN_SET | CAN_RECORD | CAN_SAVE | CAN_EXPERIMENT | CAN_SCOPE,
         work_memory: (4 * memory::WORDS) as u32,
         lead_ticks: LEAD_TICKS,
     }

@@ -90,8 +90,7 @@ type Table = [Samples; NAMES.len()];
 
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Samples::of_each(&NAMES));
 static QUEUES: ConstStaticCell<Queues> = ConstStaticCell::new(Queues::new());
-static WORK: ConstStaticCell<WorkMemory<WORDS, WORDS>> =
-    ConstStaticCell::new(WorkMemory::new());
+static WORK: ConstStaticCell<WorkMemory<WORDS, WORDS>> = ConstStaticCell::new(WorkMemory::new());
 static MAPS: ConstStaticCell<Maps> = ConstStaticCell::new(Maps::new());
 static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
     ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
