@@ -17,8 +17,16 @@ pub const HOST: &[&str] = &[
 /// The QEMU harness; all its ignored tests need QEMU.
 pub const QEMU: &str = "leadscrew-qemu";
 
-/// Board crates with the target of each; one cargo call a board.
-pub const BOARDS: &[(&str, &str)] = &[("board-mps2-an386", TARGET), ("board-stm32f4", TARGET)];
+/// Board crates with the target of each, and the words that choose its chip; one cargo call a line.
+pub const BOARDS: &[(&str, &str, &[&str])] = &[
+    ("board-mps2-an386", TARGET, &[]),
+    ("board-stm32f4", TARGET, &[]),
+    ("board-stm32f4", TARGET, F405),
+    ("board-stm32f4", TARGET, F446),
+];
+
+const F405: &[&str] = &["--no-default-features", "--features", "stm32f405rg"];
+const F446: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 
 /// The target of all boards so far.
 pub const TARGET: &str = "thumbv7em-none-eabihf";

@@ -175,8 +175,9 @@ fn clippy_host() -> Result<()> {
 }
 
 fn clippy_boards() -> Result<()> {
-    BOARDS.iter().try_for_each(|(board, target)| {
+    BOARDS.iter().try_for_each(|(board, target, chip)| {
         cargo(["clippy", "--package", board, "--target", target])
+            .words(chip)
             .words(&["--", "-D", "warnings"])
             .run()
     })
@@ -185,15 +186,9 @@ fn clippy_boards() -> Result<()> {
 fn documentation() -> Result<()> {
     let deny = |call: Call| call.env("RUSTDOCFLAGS", "-D warnings").run();
     deny(cargo(["doc", "--no-deps"]).packages(HOST))?;
-    BOARDS.iter().try_for_each(|(board, target)| {
-        deny(cargo([
-            "doc",
-            "--no-deps",
-            "--package",
-            board,
-            "--target",
-            target,
-        ]))
+    BOARDS.iter().try_for_each(|(board, target, chip)| {
+        let doc = cargo(["doc", "--no-deps", "--package", board, "--target", target]);
+        deny(doc.words(chip))
     })
 }
 

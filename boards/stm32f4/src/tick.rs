@@ -40,7 +40,7 @@ pub static READY: Ready = Ready::new();
 pub static INTERLOCK: Interlock = Interlock::new();
 
 struct TickState {
-    runtime: Runtime<AxisControl<Machine>>,
+    runtime: Runtime<&'static mut AxisControl<Machine>>,
     machine: Machine,
     output: Output,
     /// Clocks of TIM5 from tick to tick.
@@ -65,7 +65,7 @@ impl TickTimer for Due {
 
 /// Hands the interrupt its state; to be called once, with the interrupt masked. Gives what the ticks leave.
 pub fn wire(
-    control: AxisControl<Machine>,
+    control: &'static mut AxisControl<Machine>,
     machine: Machine,
     output: Output,
     tick_hz: f64,

@@ -133,11 +133,7 @@ impl Uart {
 
     fn send_next(&self) {
         let registers = self.registers;
-        match self
-            .to_send
-            .with(heapless::spsc::Consumer::dequeue)
-            .flatten()
-        {
+        match self.to_send.with(Consumer::dequeue).flatten() {
             Some(byte) => {
                 self.drive(true);
                 registers.dr().write(|w| w.set_dr(byte.into()));

@@ -17,6 +17,7 @@ use leadscrew::protocol::reply::{
 };
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
+use leadscrew_app::axis_control::AxisControl;
 use leadscrew_app::edge_ring::hold;
 use leadscrew_app::input_filter::{InputFilter, line_hz};
 use leadscrew_app::link::{Boot, Link, Maps};
@@ -24,7 +25,7 @@ use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
 use leadscrew_app::report::Report;
 use leadscrew_app::tick_period::TickPeriod;
-use static_cell::ConstStaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 
 use crate::factory;
 use crate::serve::{ModbusLine, Server};
@@ -33,32 +34,30 @@ use crate::serve::{ModbusLine, Server};
 const BAUD: u32 = 115_200;
 /// Address on the Modbus line.
 const MODBUS_UNIT: u8 = 1;
-/// From an order to the start of its plan, in milliseconds: planning takes most of it.
-const LEAD_MS: f64 = 16.0;
+/// From an order to the start of its plan, in ticks: planning takes most of it.
+const LEAD_TICKS: u32 = 16;
 
 /// Words of captures on their way: six ticks of 160 edges.
 const CAPTURED: usize = 1024;
 /// Most edges of one of them.
 const LOOKED_AT: usize = 512;
 
-/// What is left of the boot besides the statics.
-pub type Booted = (Link<Flash>, Consumer<'static, Report>, Settings);
-
-/// Axis, inputs and output, with the tick masked; or why there are none.
-#[inline(never)]
-pub fn boot() -> Result<(Booted, TickPeriod), &'static str> {
+/// Starts axis, link, inputs and output, with the tick masked; gives thread mode's end of it, or why there is none.
+pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
     static QUEUES: ConstStaticCell<Queues<CAPTURED, LOOKED_AT>> =
         ConstStaticCell::new(Queues::new());
     static MAPS: ConstStaticCell<Maps<1>> = ConstStaticCell::new(Maps::new());
     static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
         ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
 
-    let factory = factory::settings().map_err(|_| "the factory's drive cannot be tuned")?;
+    static CONTROL: ConstStaticCell<Option<AxisControl<Machine>>> = ConstStaticCell::new(None);
+    static LINK: ConstStaticCell<Option<Link<Flash>>> = ConstStaticCell::new(None);
+
     let boot = Boot {
         flash: Flash::take().ok_or("the flash is taken")?,
         range: 0..CAPACITY as u32,
-        factory,
-        identity: identity(&factory),
+        factory: factory::settings().map_err(|_| "the factory's drive cannot be tuned")?,
+        identity: identity(),
         queues: QUEUES.take(),
         work: memory::take_work().ok_or("the work memory is taken")?,
         maps: MAPS.take().places(),
@@ -66,20 +65,19 @@ pub fn boot() -> Result<(Booted, TickPeriod), &'static str> {
         interlock: &INTERLOCK,
         counters: &COUNTERS,
     };
-    let mut wired = None;
-    let started = boot.start_with(|control, settings| {
-        let tick_hz = settings.axis.tick_hz;
-        let machine = machine(settings, tick_hz);
-        wired = Some(tick::wire(control, machine, output(), tick_hz));
-    });
-    let (link, loaded) = started.map_err(|_| "the factory's parameters make no axis")?;
+    let (control, link) = (CONTROL.take(), LINK.take());
+    let started = boot.start_in(control, link);
+    let loaded = started.map_err(|_| "the factory's parameters make no axis")?;
     if loaded.is_storeless {
         defmt::error!("the flash holds no store that can be used: nothing can be saved");
     }
-    let reports = wired.ok_or("the axis was not given")?;
+    let control = control.as_mut().ok_or("the axis was not made")?;
+    let link = link.as_mut().ok_or("the link was not made")?;
     let tick_hz = link.view().scale.tick_hz();
+    let machine = machine(&link.settings(), tick_hz);
+    let reports = tick::wire(control, machine, output(), tick_hz);
     let period = TickPeriod::nearest(FAST_TIMER_HZ, tick_hz).ok_or("no timer has that rate")?;
-    Ok(((link, reports, factory), period))
+    Ok((server(link, reports)?, period))
 }
 
 fn output() -> Output {
@@ -90,7 +88,7 @@ fn output() -> Output {
     output
 }
 
-fn identity(settings: &Settings) -> Identity {
+fn identity() -> Identity {
     Identity {
         firmware: env!("CARGO_PKG_VERSION"),
         build: if cfg!(debug_assertions) {
@@ -101,7 +99,7 @@ fn identity(settings: &Settings) -> Identity {
         board: "stm32f4",
         capabilities: CAN_HOME | CAN_SET | CAN_RECORD | CAN_SAVE | CAN_EXPERIMENT | CAN_SCOPE,
         work_memory: (4 * memory::WORDS) as u32,
-        lead_ticks: (settings.axis.tick_hz * LEAD_MS / 1000.0) as u32,
+        lead_ticks: LEAD_TICKS,
     }
 }
 
@@ -124,14 +122,20 @@ fn machine(settings: &Settings, tick_hz: f64) -> Machine {
     Machine::new(filter, held.is_ok(), References::start())
 }
 
-/// The lines, in thread mode's end of all that was booted.
-pub fn server((link, reports, factory): Booted) -> Result<Server, &'static str> {
+/// The lines, and all that thread mode works with.
+#[inline(never)]
+fn server(
+    link: &'static mut Link<Flash>,
+    reports: Consumer<'static, Report>,
+) -> Result<Server, &'static str> {
     static LINK: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
     static MODBUS: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
+    static UNIT: StaticCell<Modbus> = StaticCell::new();
     let config = Config::serial(MODBUS_UNIT, BAUD).map_err(|_| "Modbus is set up wrongly")?;
     let modbus = ModbusLine {
         line: uart::MODBUS.open(BAUD, MODBUS.take()),
-        unit: Modbus::new(config, factory),
+        // Only the names of the settings matter there.
+        unit: UNIT.init(Modbus::new(config, link.settings())),
     };
     let line = uart::LINK.open(BAUD, LINK.take());
     Ok(Server::new(line, modbus, link, reports))

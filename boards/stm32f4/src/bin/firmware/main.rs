@@ -37,8 +37,8 @@ async fn main(spawner: Spawner) {
 fn start() -> Result<&'static mut Server, &'static str> {
     static SERVER: StaticCell<Server> = StaticCell::new();
     let mut core = cortex_m::Peripherals::take().ok_or("main runs once")?;
-    let (booted, period) = boot::boot()?;
-    let server = SERVER.init(boot::server(booted)?);
+    let (server, period) = boot::boot()?;
+    let server = SERVER.init(server);
     watchdog::start(server.tick_hz() as u32);
     priorities::unmask(&mut core.NVIC);
     tick::start(period);

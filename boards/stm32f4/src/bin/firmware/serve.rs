@@ -18,14 +18,14 @@ const LAST_WORDS: Duration = Duration::from_millis(100);
 /// The axis as a unit on its line.
 pub struct ModbusLine {
     pub line: Line,
-    pub unit: Modbus,
+    pub unit: &'static mut Modbus,
 }
 
 /// What thread mode works with.
 pub struct Server {
     line: Line,
     modbus: ModbusLine,
-    link: Link<Flash>,
+    link: &'static mut Link<Flash>,
     reports: Consumer<'static, Report>,
     restart_by: Option<Instant>,
 }
@@ -47,7 +47,7 @@ impl Server {
     pub fn new(
         line: Line,
         modbus: ModbusLine,
-        link: Link<Flash>,
+        link: &'static mut Link<Flash>,
         reports: Consumer<'static, Report>,
     ) -> Self {
         Self {
@@ -106,9 +106,9 @@ impl Server {
                 line.send(reply);
             };
             if count == 0 {
-                return unit.poll(now_us, link, send);
+                return unit.poll(now_us, *link, send);
             }
-            unit.receive(&bytes[..count], now_us, link, send);
+            unit.receive(&bytes[..count], now_us, *link, send);
         }
     }
 
