@@ -15,7 +15,8 @@ const TICKS: u32 = 2600;
 /// One d of a following error, as the scope has it.
 const D: f64 = 65_536.0;
 
-fn set_up(tool: &mut Axis) {
+/// Sets a loop for the reference machine.
+pub fn set_up(tool: &mut Axis) {
     tool.edit_parameters(|edit| {
         for (name, value) in tuned() {
             edit.set_parameter(&name, value)?;
