@@ -13,8 +13,8 @@ use leadscrew::hal::{Capture, Latch};
 
 /// Words of the queue: three ticks of 1 200 edges.
 pub const WORDS: usize = 4096;
-/// Most edges of a capture.
-const EDGES: usize = 1536;
+/// Most edges of a capture, where there is room.
+pub const EDGES: usize = 1536;
 const HEAD: usize = 4;
 
 const HAS_LAST: u32 = 1 << 16;
@@ -25,16 +25,19 @@ const ILLEGAL: u32 = 1 << 19;
 /// The tick's end.
 pub struct CaptureSender {
     words: Producer<'static, u32>,
+    /// Most edges of a capture.
+    edges: usize,
     is_open: bool,
     /// One was left out.
     is_lossy: bool,
 }
 
 impl CaptureSender {
-    /// A closed end: it passes nothing on.
-    pub const fn new(words: Producer<'static, u32>) -> Self {
+    /// A closed end: it passes nothing on. Captures of more than `edges` are left out.
+    pub const fn new(words: Producer<'static, u32>, edges: usize) -> Self {
         Self {
             words,
+            edges,
             is_open: false,
             is_lossy: false,
         }
@@ -60,7 +63,7 @@ impl CaptureSender {
         let edges = older.len() + newer.len();
         let index = capture.index.map(|latch| [latch.count, latch.time]);
         let needed = HEAD + 2 + edges;
-        if edges > EDGES || self.words.capacity() - self.words.len() < needed {
+        if edges > self.edges || self.words.capacity() - self.words.len() < needed {
             self.is_lossy = true;
             return;
         }
@@ -86,16 +89,13 @@ impl CaptureSender {
 /// Thread mode's end. The tick preempts thread mode and not the other way, so that a capture is always there as a whole.
 pub struct CaptureReceiver {
     words: Consumer<'static, u32>,
-    edges: [u32; EDGES],
+    edges: &'static mut [u32],
 }
 
 impl CaptureReceiver {
-    /// The other end of a sender's queue.
-    pub const fn new(words: Consumer<'static, u32>) -> Self {
-        Self {
-            words,
-            edges: [0; EDGES],
-        }
+    /// The other end of a sender's queue; `edges` has room for those of a capture.
+    pub const fn new(words: Consumer<'static, u32>, edges: &'static mut [u32]) -> Self {
+        Self { words, edges }
     }
 
     /// Gives the next capture to `take`; `None` if there is none.
@@ -143,7 +143,11 @@ mod tests {
     fn ends() -> (CaptureSender, CaptureReceiver) {
         let queue: &'static mut Queue<u32, 64> = Box::leak(Box::new(Queue::new()));
         let (producer, consumer) = queue.split();
-        (CaptureSender::new(producer), CaptureReceiver::new(consumer))
+        let edges = Box::leak(Box::new([0; EDGES]));
+        (
+            CaptureSender::new(producer, EDGES),
+            CaptureReceiver::new(consumer, edges),
+        )
     }
 
     #[test]

@@ -140,6 +140,17 @@ impl InputFilter {
             .max_by_key(|filter| filter.clocks())
     }
 
+    /// The shortest that is used, for what is faster than any should be.
+    #[must_use]
+    pub const fn shortest() -> Self {
+        let (samples, divider) = CODES[FIRST_CODE as usize];
+        Self {
+            code: FIRST_CODE,
+            samples,
+            divider,
+        }
+    }
+
     /// The filter for an axis of `counts_per_mm` that may be as fast as `feed_mm_per_min`. That is the feed at full command:
     /// a drive out of control is to be counted well, too.
     ///

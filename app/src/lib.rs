@@ -29,3 +29,4 @@ pub mod report;
 pub mod store;
 pub mod telemetry;
 pub mod tick;
+pub mod tick_period;

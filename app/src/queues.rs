@@ -10,7 +10,7 @@ use leadscrew::scope::{Sample, Scope};
 use leadscrew::supervisor::FirstFault;
 
 use crate::axis_control::Request;
-use crate::captures::{CaptureReceiver, CaptureSender, WORDS};
+use crate::captures::{CaptureReceiver, CaptureSender, EDGES, WORDS};
 
 /// Requests that may wait.
 const REQUESTS: usize = 8;
@@ -28,8 +28,8 @@ pub struct Outcome {
     pub result: Result<(), Refusal>,
 }
 
-/// Memory of the queues.
-pub struct Queues {
+/// Memory of the queues; captures have `CAPTURED` words, and the one that thread mode looks at `LOOKED_AT` edges.
+pub struct Queues<const CAPTURED: usize = WORDS, const LOOKED_AT: usize = EDGES> {
     requests: Queue<Request, REQUESTS>,
     configs: Queue<(Ticket, AxisConfig), 2>,
     outcomes: Queue<Outcome, OUTCOMES>,
@@ -37,14 +37,16 @@ pub struct Queues {
     scopes: Queue<Scope<'static>, 2>,
     scopes_back: Queue<Scope<'static>, 2>,
     samples: Queue<Sample, SAMPLES>,
-    captures: Queue<u32, WORDS>,
+    captures: Queue<u32, CAPTURED>,
+    edges: [u32; LOOKED_AT],
     refused: AtomicU32,
-    /// The tick whose report thread mode took last; [`NO_BEAT`] before the first one.
+    /// One more than the tick whose report thread mode took last; [`NO_BEAT`] before the first one.
     beat: AtomicU32,
 }
 
-/// Thread mode has taken no report yet: it has no link, or has not begun.
-const NO_BEAT: u32 = u32::MAX;
+/// Thread mode has taken no report yet: it has no link, or has not begun. Beats are kept one higher, so that all of the memory
+/// is zero at first, and no image has to hold it.
+const NO_BEAT: u32 = 0;
 
 /// What the tick holds of them.
 pub struct TickEnds {
@@ -80,13 +82,13 @@ pub struct LinkEnds {
     beat: &'static AtomicU32,
 }
 
-impl Default for Queues {
+impl<const CAPTURED: usize, const LOOKED_AT: usize> Default for Queues<CAPTURED, LOOKED_AT> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Queues {
+impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> {
     /// Empty queues.
     #[must_use]
     pub const fn new() -> Self {
@@ -99,6 +101,7 @@ impl Queues {
             scopes_back: Queue::new(),
             samples: Queue::new(),
             captures: Queue::new(),
+            edges: [0; LOOKED_AT],
             refused: AtomicU32::new(0),
             beat: AtomicU32::new(NO_BEAT),
         }
@@ -136,7 +139,8 @@ impl Queues {
             refused: &self.refused,
             beat: &self.beat,
         };
-        let (capture, captures) = (CaptureSender::new(capture), CaptureReceiver::new(captures));
+        let capture = CaptureSender::new(capture, LOOKED_AT);
+        let captures = CaptureReceiver::new(captures, &mut self.edges);
         (tick, capture, link, captures)
     }
 }
@@ -145,7 +149,8 @@ impl LinkEnds {
     /// Tells the tick that thread mode lives: it has taken the report of `tick`.
     pub fn beat(&self, tick: u32) {
         // One tick in 2³² is told late.
-        self.beat.store(tick.min(NO_BEAT - 1), Ordering::Relaxed);
+        self.beat
+            .store(tick.saturating_add(1), Ordering::Relaxed);
     }
 }
 
@@ -154,7 +159,7 @@ impl TickEnds {
     pub(crate) fn behind(&self, tick: u32) -> u32 {
         match self.beat.load(Ordering::Relaxed) {
             NO_BEAT => 0,
-            beat => tick.wrapping_sub(beat),
+            beat => tick.wrapping_sub(beat - 1),
         }
     }
 

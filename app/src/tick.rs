@@ -18,6 +18,20 @@ pub trait Control {
     fn missed(&mut self) -> Self::Record;
 }
 
+/// One that lies elsewhere: what it is moved through has no room for it.
+impl<C: Control> Control for &mut C {
+    type Inputs = C::Inputs;
+    type Record = C::Record;
+
+    fn step(&mut self, inputs: &C::Inputs) -> C::Record {
+        C::step(self, inputs)
+    }
+
+    fn missed(&mut self) -> C::Record {
+        C::missed(self)
+    }
+}
+
 /// The timer whose interrupt is the tick.
 pub trait TickTimer {
     /// Timer clocks since the tick was due; starts again at the next one.

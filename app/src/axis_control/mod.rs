@@ -81,6 +81,11 @@ impl<B> AxisControl<B> {
             board: PhantomData,
         }
     }
+
+    /// The axis, before it ticks.
+    pub(crate) const fn axis_mut(&mut self) -> &mut Axis<'static> {
+        &mut self.axis
+    }
 }
 
 impl<B: Inlet> Control for AxisControl<B> {

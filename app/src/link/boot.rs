@@ -4,24 +4,27 @@ use core::ops::Range;
 
 use embedded_storage::nor_flash::NorFlash;
 use leadscrew::axis::{Axis, Outputs};
+use leadscrew::calibration::Work;
 use leadscrew::capture::Unwrapper;
 use leadscrew::compensation::table::{POINTS, ScrewPoint, ScrewTable, Stretch};
 use leadscrew::encoder_map::EncoderMap;
-use leadscrew::params::ParamError;
+use leadscrew::params::{AxisConfig, ParamError};
 use leadscrew::protocol::service::{Identity, Seen, Service};
 use leadscrew::settings::Settings;
+use leadscrew::units::AxisScale;
 
 use super::Link;
 use super::bench::Bench;
-use super::memory::{Lent, Memory};
+use super::memory::{Lent, MapPlaces};
 use crate::axis_control::AxisControl;
-use crate::queues::Queues;
+use crate::captures::{CaptureReceiver, EDGES, WORDS};
+use crate::queues::{LinkEnds, Queues};
 use crate::report::Report as TickReport;
 use crate::store::{Interlock, Kind, Report, SET_BYTES, Source, Store};
 use crate::tick::Counters;
 
 /// What a board gives for its axis and link.
-pub struct Boot<F> {
+pub struct Boot<F, const CAPTURED: usize = WORDS, const LOOKED_AT: usize = EDGES> {
     /// The flash of the store.
     pub flash: F,
     /// Where in it.
@@ -31,9 +34,11 @@ pub struct Boot<F> {
     /// What it says of itself.
     pub identity: Identity,
     /// Memory of the queues.
-    pub queues: &'static mut Queues,
-    /// Memory to work with.
-    pub memory: &'static mut Memory,
+    pub queues: &'static mut Queues<CAPTURED, LOOKED_AT>,
+    /// Memory to work with; [`super::WorkMemory`] is one.
+    pub work: Work<'static>,
+    /// Memory of encoder maps.
+    pub maps: MapPlaces,
     /// Memory of the screw table in use.
     pub screw: &'static mut [Stretch; POINTS.1],
     /// Keeps the axis off while the store is written.
@@ -55,75 +60,152 @@ pub struct Loaded {
     pub is_storeless: bool,
 }
 
-impl<F: NorFlash> Boot<F> {
+impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURED, LOOKED_AT> {
     /// Loads what is stored, and makes the axis of it. An axis whose parameters are not whole is not enabled before they
     /// were saved anew.
     ///
     /// # Errors
     /// [`ParamError`] if not even the factory's parameters make an axis.
     pub fn start<B>(self) -> Result<(AxisControl<B>, Link<F>, Loaded), ParamError> {
+        let (mut control, mut link) = (None, None);
+        let loaded = self.start_in(&mut control, &mut link)?;
+        // Both were made.
+        match (control, link) {
+            (Some(control), Some(link)) => Ok((control, link, loaded)),
+            _ => unreachable!(),
+        }
+    }
+
+    /// The same in place, for a board whose stack has no room for an axis and a link.
+    ///
+    /// # Errors
+    /// [`ParamError`] if not even the factory's parameters make an axis.
+    #[inline(never)]
+    pub fn start_in<B>(
+        self,
+        control: &mut Option<AxisControl<B>>,
+        link: &mut Option<Link<F>>,
+    ) -> Result<Loaded, ParamError> {
         let Self {
             flash,
             range,
-            factory,
+            mut factory,
             identity,
             queues,
-            memory,
+            work,
+            maps: mut map_places,
             screw,
             interlock,
             counters,
         } = self;
-        let (work, mut map_places) = memory.split();
-        let store = interlock
+        let mut store = interlock
             .permit(&Outputs::default())
             .ok()
             .and_then(|permission| Store::mount(flash, range, &permission).ok());
-        let mut lent = Lent::Free(work);
         let mut found = Found {
             settings: factory,
             report: Report::default(),
             map: None,
             screw: None,
         };
-        let mut store = store;
         if let Some(store) = &mut store {
-            found.load(store, &mut lent, &mut map_places, screw);
+            let bytes = bytemuck::cast_slice_mut(work.mean);
+            found.load(store, bytes, &mut map_places, screw);
         }
-        let is_whole = found.report.is_clean() || found.report.source == Source::Defaults;
-        let mut settings = found.settings;
-        let (config, is_valid) = match settings.validate() {
-            Ok(config) => (config, true),
-            Err(_) => {
-                settings = factory;
-                (settings.validate()?, false)
-            }
-        };
-        let mut axis = Axis::new(config);
-        axis.set_map(
-            found
-                .map
-                .and_then(|image| EncoderMap::from_bytes(image).ok()),
-        );
-        let has_screw = found.screw.is_some() && axis.set_screw_table(found.screw).is_ok();
-        axis.supervisor_mut()
-            .set_store_corrupt(!(is_whole && is_valid));
+        let is_valid = check(&mut found.settings).is_ok();
+        if !is_valid {
+            // As it is once it is whole.
+            check(&mut factory)?;
+            found.settings = factory;
+        }
         let (tick, captures_out, ends, captures) = queues.split();
-        let service = Service::new(identity, &settings)?;
-        let bench = Bench {
+        let has_screw = give(
+            &mut found,
+            is_valid,
+            |config| AxisControl::new(Axis::new(*config), tick, captures_out, interlock),
+            control,
+        )?;
+        let loaded = Loaded {
+            report: found.report,
+            has_map: found.map.is_some(),
+            has_screw,
+            is_storeless: store.is_none(),
+        };
+        let parts = Parts {
+            identity,
             ends,
             captures,
             counters,
             interlock,
             store,
-            lent,
+            work,
             map_places,
+            map: found.map,
+        };
+        parts.link(&found.settings, link)?;
+        Ok(loaded)
+    }
+}
+
+/// Validates, on a frame of its own: what comes of it is large.
+#[inline(never)]
+fn check(settings: &mut Settings) -> Result<(), ParamError> {
+    settings.validate().map(|_| ())
+}
+
+/// Makes the axis in its place; true if it has a screw table. On a frame of its own: an axis is large.
+#[inline(never)]
+fn give<B>(
+    found: &mut Found,
+    is_valid: bool,
+    make: impl FnOnce(&AxisConfig) -> AxisControl<B>,
+    place: &mut Option<AxisControl<B>>,
+) -> Result<bool, ParamError> {
+    let is_whole = found.report.is_clean() || found.report.source == Source::Defaults;
+    let config = found.settings.validate()?;
+    let axis = place.insert(make(&config)).axis_mut();
+    let map = found.map;
+    axis.set_map(map.and_then(|image| EncoderMap::from_bytes(image).ok()));
+    let has_screw = found.screw.is_some() && axis.set_screw_table(found.screw).is_ok();
+    axis.supervisor_mut()
+        .set_store_corrupt(!(is_whole && is_valid));
+    Ok(has_screw)
+}
+
+/// What a link is made of.
+struct Parts<F: NorFlash> {
+    identity: Identity,
+    ends: LinkEnds,
+    captures: CaptureReceiver,
+    counters: &'static Counters,
+    interlock: &'static Interlock,
+    store: Option<Store<F>>,
+    work: Work<'static>,
+    map_places: MapPlaces,
+    map: Option<&'static [u8]>,
+}
+
+impl<F: NorFlash> Parts<F> {
+    /// Makes the link in its place. On a frame of its own, too.
+    #[inline(never)]
+    fn link(self, settings: &Settings, place: &mut Option<Link<F>>) -> Result<(), ParamError> {
+        let motion = &settings.axis.motion;
+        let scale = AxisScale::new(motion.counts_per_mm, settings.axis.tick_hz)?;
+        let bench = Bench {
+            ends: self.ends,
+            captures: self.captures,
+            counters: self.counters,
+            interlock: self.interlock,
+            store: self.store,
+            lent: Lent::Free(self.work),
+            map_places: self.map_places,
             learning: Default::default(),
             unwrapper: Unwrapper::new(),
-            map: found.map,
+            map: self.map,
             timer_hz: settings.axis.timer_hz,
             tick_hz: settings.axis.tick_hz,
-            scale: config.scale,
-            capabilities: identity.capabilities,
+            scale,
+            capabilities: self.identity.capabilities,
             seen: Seen::default(),
             report: TickReport::default(),
             first_fault: None,
@@ -135,19 +217,12 @@ impl<F: NorFlash> Boot<F> {
             next_ticket: 0,
             wants_restart: false,
         };
-        let loaded = Loaded {
-            report: found.report,
-            has_map: found.map.is_some(),
-            has_screw,
-            is_storeless: bench.store.is_none(),
-        };
-        let control = AxisControl::new(axis, tick, captures_out, interlock);
-        let link = Link {
-            service,
+        *place = Some(Link {
+            service: Service::new(self.identity, settings)?,
             bench,
             asked: None,
-        };
-        Ok((control, link, loaded))
+        });
+        Ok(())
     }
 }
 
@@ -160,16 +235,15 @@ struct Found {
 }
 
 impl Found {
+    /// On a frame of its own, as are all that follow: the board's stack is small.
+    #[inline(never)]
     fn load<F: NorFlash>(
         &mut self,
         store: &mut Store<F>,
-        lent: &mut Lent,
-        places: &mut super::memory::MapPlaces,
+        bytes: &mut [u8],
+        places: &mut MapPlaces,
         screw: &'static mut [Stretch; POINTS.1],
     ) {
-        let Some(bytes) = lent.bytes() else {
-            return;
-        };
         let set = bytes.get_mut(..SET_BYTES).unwrap_or_default();
         match store.load(&self.settings, set, &mut |_| {}) {
             Ok((settings, report)) => {

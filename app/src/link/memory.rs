@@ -4,53 +4,82 @@ use leadscrew::calibration::{Learner, Work};
 use leadscrew::identification::recorder::Recorder;
 use leadscrew::scope::Scope;
 
-/// Words of the work memory; as many edges of an encoder can be learned.
+use crate::store::SET_BYTES;
+
+/// Words of the work memory, and its halves, where there is room for all; as many edges of an encoder can be learned.
 pub const WORDS: usize = 10_000;
 /// Bytes of the longest image of an encoder map.
 pub const MAP_BYTES: usize = 10_752;
 /// Maps between two restarts: the one that was stored, and one that is learned.
-const MAPS: usize = 2;
+pub const MAPS: usize = 2;
 
-/// A place for it, to be a static.
-pub struct Memory {
+/// A place for it, to be a static; all zeros is one.
+pub struct WorkMemory<const WORDS: usize, const HALVES: usize> {
     words: [i32; WORDS],
-    halves: [i16; WORDS],
-    maps: [[u8; MAP_BYTES]; MAPS],
+    halves: [i16; HALVES],
 }
 
-impl Default for Memory {
+impl<const WORDS: usize, const HALVES: usize> Default for WorkMemory<WORDS, HALVES> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Memory {
+impl<const WORDS: usize, const HALVES: usize> WorkMemory<WORDS, HALVES> {
+    /// Bytes that the store works with come from the halves.
+    const HOLDS_A_SET: () = assert!(
+        2 * HALVES >= SET_BYTES,
+        "the halves are to hold a set of parameters"
+    );
+
     /// All zero.
     #[must_use]
     pub const fn new() -> Self {
+        let () = Self::HOLDS_A_SET;
         Self {
             words: [0; WORDS],
-            halves: [0; WORDS],
-            maps: [[0; MAP_BYTES]; MAPS],
+            halves: [0; HALVES],
         }
     }
 
-    pub(super) fn split(&'static mut self) -> (Work<'static>, MapPlaces) {
-        let work = Work {
+    /// What [`Boot`](super::Boot) takes.
+    pub const fn lend(&'static mut self) -> Work<'static> {
+        Work {
             sums: &mut self.words,
             mean: &mut self.halves,
-        };
+        }
+    }
+}
+
+/// Places for encoder maps, to be a static: what the axis goes by, so not lent to anything else.
+pub struct Maps<const PLACES: usize = MAPS>([[u8; MAP_BYTES]; PLACES]);
+
+impl<const PLACES: usize> Default for Maps<PLACES> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const PLACES: usize> Maps<PLACES> {
+    /// All zero.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self([[0; MAP_BYTES]; PLACES])
+    }
+
+    /// What [`Boot`](super::Boot) takes.
+    pub fn places(&'static mut self) -> MapPlaces {
         let mut places = MapPlaces::new();
-        for place in &mut self.maps {
+        for place in &mut self.0 {
             // As many as there are.
             let _ = places.push(place);
         }
-        (work, places)
+        places
     }
 }
 
 /// Places for maps that are not in use.
-pub(super) type MapPlaces = heapless::Vec<&'static mut [u8; MAP_BYTES], MAPS>;
+pub type MapPlaces = heapless::Vec<&'static mut [u8; MAP_BYTES], MAPS>;
 
 /// Who has the work memory.
 #[expect(

@@ -23,7 +23,7 @@ mod scopes;
 mod storage;
 
 pub use boot::{Boot, Loaded};
-pub use memory::{MAP_BYTES, Memory, WORDS};
+pub use memory::{MAP_BYTES, MapPlaces, Maps, WORDS, WorkMemory};
 
 use embedded_storage::nor_flash::NorFlash;
 use leadscrew::protocol::refusal::Refusal;

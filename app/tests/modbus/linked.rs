@@ -5,7 +5,7 @@ use leadscrew::compensation::table::{POINTS, Stretch};
 use leadscrew::hal::Capture;
 use leadscrew::protocol::service::Identity;
 use leadscrew_app::axis_control::{AxisControl, Inlet};
-use leadscrew_app::link::{Boot, Link, Memory};
+use leadscrew_app::link::{Boot, Link, Maps, WORDS, WorkMemory};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
 use leadscrew_app::store::Interlock;
@@ -56,7 +56,8 @@ fn on(flash: &mut Flash) -> Board<'_> {
             lead_ticks: 2,
         },
         queues: leak(Queues::new()),
-        memory: leak(Memory::new()),
+        work: leak(WorkMemory::<WORDS, WORDS>::new()).lend(),
+        maps: leak(Maps::<2>::new()).places(),
         screw: leak([Stretch::default(); POINTS.1]),
         interlock: leak(Interlock::new()),
         counters: leak(Counters::new()),

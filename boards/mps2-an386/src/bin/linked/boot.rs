@@ -13,7 +13,7 @@ use leadscrew::protocol::reply::{
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
 use leadscrew_app::axis_control::AxisControl;
-use leadscrew_app::link::{Boot, Link, Memory, WORDS};
+use leadscrew_app::link::{Boot, Link, Maps, WORDS, WorkMemory};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
 use static_cell::ConstStaticCell;
@@ -31,7 +31,9 @@ const LEAD_MS: u32 = 16;
 /// The axis, its link, and the tick rate of its settings.
 pub fn axis(words: &Words, factory: Settings) -> (AxisControl<Plant>, Link<Flash>, f64) {
     static QUEUES: ConstStaticCell<Queues> = ConstStaticCell::new(Queues::new());
-    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
+    static WORK: ConstStaticCell<WorkMemory<WORDS, WORDS>> =
+        ConstStaticCell::new(WorkMemory::new());
+    static MAPS: ConstStaticCell<Maps> = ConstStaticCell::new(Maps::new());
     static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
         ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
 
@@ -46,7 +48,8 @@ pub fn axis(words: &Words, factory: Settings) -> (AxisControl<Plant>, Link<Flash
         factory,
         identity: identity(words),
         queues: QUEUES.take(),
-        memory: MEMORY.take(),
+        work: WORK.take().lend(),
+        maps: MAPS.take().places(),
         screw: SCREW.take(),
         interlock: &INTERLOCK,
         counters: &COUNTERS,

@@ -13,7 +13,7 @@ use leadscrew::protocol::request::Request;
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
 use leadscrew_app::axis_control::AxisControl;
-use leadscrew_app::link::{Boot, Link, Memory, WORDS};
+use leadscrew_app::link::{Boot, Link, Maps, WORDS, WorkMemory};
 use leadscrew_app::queues::Queues;
 use leadscrew_app::report::Report;
 use leadscrew_app::store::Interlock;
@@ -90,7 +90,9 @@ type Table = [Samples; NAMES.len()];
 
 static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Samples::of_each(&NAMES));
 static QUEUES: ConstStaticCell<Queues> = ConstStaticCell::new(Queues::new());
-static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
+static WORK: ConstStaticCell<WorkMemory<WORDS, WORDS>> =
+    ConstStaticCell::new(WorkMemory::new());
+static MAPS: ConstStaticCell<Maps> = ConstStaticCell::new(Maps::new());
 static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
     ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
 static INTERLOCK: Interlock = Interlock::new();
@@ -141,7 +143,8 @@ impl<'c> Rig<'c> {
                 lead_ticks: LEAD,
             },
             queues: QUEUES.take(),
-            memory: MEMORY.take(),
+            work: WORK.take().lend(),
+            maps: MAPS.take().places(),
             screw: SCREW.take(),
             interlock: &INTERLOCK,
             counters: &COUNTERS,

@@ -1,0 +1,22 @@
+//! Puts the board's linker scripts where the linker finds them.
+
+use std::path::PathBuf;
+use std::{env, fs};
+
+fn main() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts"));
+    let has_ccm = env::var_os("CARGO_FEATURE_STM32F446RE").is_none();
+    let board = if has_ccm { "board.x" } else { "board-f446.x" };
+    for (script, name) in [(board, "board.x"), ("sections.x", "sections.x")] {
+        fs::copy(script, out.join(name))
+            .unwrap_or_else(|e| panic!("cannot copy {script} to {}: {e}", out.display()));
+        println!("cargo:rerun-if-changed={script}");
+    }
+    println!("cargo:rustc-link-search={}", out.display());
+    // Read from the linker's working directory, the workspace root; it includes board.x.
+    println!("cargo:rerun-if-changed=../../memory.x");
+    // No page alignment: the image is flashed, not loaded by an operating system.
+    println!("cargo:rustc-link-arg-bins=--nmagic");
+    println!("cargo:rustc-link-arg-bins=-Tlink.x");
+    println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
+}

@@ -1,0 +1,147 @@
+//! From the flash to an axis, its link and its lines.
+
+use board_stm32f4::clocks::{FAST_TIMER_HZ, TIMER_HZ};
+use board_stm32f4::converter::Output;
+use board_stm32f4::encoder::{self, RING};
+use board_stm32f4::flash::{CAPACITY, Flash};
+use board_stm32f4::machine::Machine;
+use board_stm32f4::references::References;
+use board_stm32f4::ring::EDGES;
+use board_stm32f4::tick::{self, COUNTERS, INTERLOCK};
+use board_stm32f4::{latches, memory, uart};
+use leadscrew::compensation::Stretch;
+use leadscrew::compensation::table::POINTS;
+use leadscrew::protocol::reply::{
+    CAN_EXPERIMENT, CAN_HOME, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
+};
+use leadscrew::protocol::service::Identity;
+use leadscrew::settings::Settings;
+use leadscrew_app::axis_control::AxisControl;
+use leadscrew_app::edge_ring::hold;
+use leadscrew_app::input_filter::{InputFilter, line_hz};
+use leadscrew_app::link::{Boot, Link, Maps};
+use leadscrew_app::modbus::{Config, Modbus, Panel as _};
+use leadscrew_app::queues::Queues;
+use leadscrew_app::tick_period::TickPeriod;
+use leadscrew_app::report::Report;
+use static_cell::{ConstStaticCell, StaticCell};
+use heapless::spsc::Consumer;
+
+use crate::factory;
+use crate::serve::{ModbusLine, Server};
+
+/// Bits a second of both UARTs.
+const BAUD: u32 = 115_200;
+/// Address on the Modbus line.
+const MODBUS_UNIT: u8 = 1;
+/// From an order to the start of its plan, in ticks: planning takes most of it.
+const LEAD_TICKS: u32 = 16;
+
+/// Words of captures on their way: six ticks of 160 edges.
+const CAPTURED: usize = 1024;
+/// Most edges of one of them.
+const LOOKED_AT: usize = 512;
+
+/// Starts axis, link, inputs and output, with the tick masked; gives thread mode's end of it, or why there is none.
+pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
+    static QUEUES: ConstStaticCell<Queues<CAPTURED, LOOKED_AT>> =
+        ConstStaticCell::new(Queues::new());
+    static MAPS: ConstStaticCell<Maps<1>> = ConstStaticCell::new(Maps::new());
+    static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
+        ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
+
+    static CONTROL: ConstStaticCell<Option<AxisControl<Machine>>> = ConstStaticCell::new(None);
+    static LINK: ConstStaticCell<Option<Link<Flash>>> = ConstStaticCell::new(None);
+
+    let boot = Boot {
+        flash: Flash::take().ok_or("the flash is taken")?,
+        range: 0..CAPACITY as u32,
+        factory: factory::settings().map_err(|_| "the factory's drive cannot be tuned")?,
+        identity: identity(),
+        queues: QUEUES.take(),
+        work: memory::take_work().ok_or("the work memory is taken")?,
+        maps: MAPS.take().places(),
+        screw: SCREW.take(),
+        interlock: &INTERLOCK,
+        counters: &COUNTERS,
+    };
+    let (control, link) = (CONTROL.take(), LINK.take());
+    let started = boot.start_in(control, link);
+    let loaded = started.map_err(|_| "the factory's parameters make no axis")?;
+    if loaded.is_storeless {
+        defmt::error!("the flash holds no store that can be used: nothing can be saved");
+    }
+    let control = control.as_mut().ok_or("the axis was not made")?;
+    let link = link.as_mut().ok_or("the link was not made")?;
+    let tick_hz = link.view().scale.tick_hz();
+    let machine = machine(&link.settings(), tick_hz);
+    let reports = tick::wire(control, machine, output(), tick_hz);
+    let period = TickPeriod::nearest(FAST_TIMER_HZ, tick_hz).ok_or("no timer has that rate")?;
+    Ok((server(link, reports)?, period))
+}
+
+fn output() -> Output {
+    let (output, trouble) = Output::start();
+    if let Some(trouble) = trouble {
+        defmt::error!("converter: {}", trouble);
+    }
+    output
+}
+
+fn identity() -> Identity {
+    Identity {
+        firmware: env!("CARGO_PKG_VERSION"),
+        build: if cfg!(debug_assertions) {
+            "debug"
+        } else {
+            "release"
+        },
+        board: "stm32f4",
+        capabilities: CAN_HOME
+            | CAN_SET
+            | CAN_RECORD
+            | CAN_SAVE
+            | CAN_EXPERIMENT
+            | CAN_SCOPE,
+        work_memory: (4 * memory::WORDS) as u32,
+        lead_ticks: LEAD_TICKS,
+    }
+}
+
+/// Starts all inputs, with the filter that the axis at full command asks for.
+#[inline(never)]
+fn machine(settings: &Settings, tick_hz: f64) -> Machine {
+    let timer_hz = f64::from(TIMER_HZ);
+    let motion = &settings.axis.motion;
+    let lines = line_hz(motion.full_command_feed_mm_per_min, motion.counts_per_mm);
+    let filter = InputFilter::longest(lines, timer_hz).unwrap_or_else(|| {
+        defmt::error!("the encoder is faster than the inputs: edges are lost at full command");
+        InputFilter::shortest()
+    });
+    let held = hold(RING, tick_hz, 4.0 * lines, filter.passed_hz(timer_hz));
+    if held.is_err() {
+        defmt::error!("too many edges in a tick: raise tick_hz; no edge times until then");
+    }
+    encoder::start(EDGES.address(), filter);
+    latches::start();
+    Machine::new(filter, held.is_ok(), References::start())
+}
+
+/// The lines, and all that thread mode works with.
+#[inline(never)]
+fn server(
+    link: &'static mut Link<Flash>,
+    reports: Consumer<'static, Report>,
+) -> Result<Server, &'static str> {
+    static LINK: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
+    static MODBUS: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
+    static UNIT: StaticCell<Modbus> = StaticCell::new();
+    let config = Config::serial(MODBUS_UNIT, BAUD).map_err(|_| "Modbus is set up wrongly")?;
+    let modbus = ModbusLine {
+        line: uart::MODBUS.open(BAUD, MODBUS.take()),
+        // Only the names of the settings matter there.
+        unit: UNIT.init(Modbus::new(config, link.settings())),
+    };
+    let line = uart::LINK.open(BAUD, LINK.take());
+    Ok(Server::new(line, modbus, link, reports))
+}

@@ -1,0 +1,48 @@
+//! The firmware of the axis board.
+//!
+//! ```text
+//! USART1: link ─► requests ─► tick        thread mode, whenever a tick has left something:
+//!              ◄─ reports  ◄─             reports, bytes
+//! USART6: Modbus
+//! flash: the store
+//! ```
+#![no_std]
+#![no_main]
+
+mod boot;
+mod factory;
+mod serve;
+
+use board_stm32f4::{clocks, gpio, priorities, safe_state, tick, watchdog};
+use embassy_executor::Spawner;
+use static_cell::StaticCell;
+
+use serve::Server;
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    clocks::start();
+    gpio::configure();
+    match start() {
+        Ok(server) => match serve::serve(server) {
+            Ok(task) => spawner.spawn(task),
+            Err(_) => safe_state::stop("the task is spawned already"),
+        },
+        Err(reason) => safe_state::stop(reason),
+    }
+}
+
+/// Makes all of it, then lets the interrupts in, the tick last; or says why not.
+#[inline(never)]
+fn start() -> Result<&'static mut Server, &'static str> {
+    static SERVER: StaticCell<Server> = StaticCell::new();
+    let mut core = cortex_m::Peripherals::take().ok_or("main runs once")?;
+    let (server, period) = boot::boot()?;
+    let server = SERVER.init(server);
+    watchdog::start(server.tick_hz() as u32);
+    priorities::unmask(&mut core.NVIC);
+    tick::start(period);
+    watchdog::shorten();
+    defmt::info!("running at {=f64} Hz", server.tick_hz());
+    Ok(server)
+}

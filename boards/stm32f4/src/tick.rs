@@ -1,0 +1,156 @@
+//! The control tick: TIM8 gives the instant, its interrupt does the work.
+//!
+//! ```text
+//! TIM8 update ─┬─ TRGO ─► TIM2, TIM5: count and time of this instant
+//!              └─ interrupt ─► sample ─► Runtime ─► converter, lines ─► watchdog ─► report interrupt ─► thread mode
+//! ```
+//!
+//! The handler has the highest priority but for the latches. Nothing in it waits but the converter, for a bounded time.
+
+use cortex_m::peripheral::NVIC;
+use embassy_stm32::interrupt;
+use embassy_stm32::pac;
+use embassy_stm32::pac::timer::vals::{Mms, Urs};
+use heapless::spsc::{Consumer, Queue};
+use leadscrew_app::axis_control::AxisControl;
+use leadscrew_app::report::Report;
+use leadscrew_app::store::Interlock;
+use leadscrew_app::telemetry::Ready;
+use leadscrew_app::tick::{Counters, Runtime, TickTimer};
+use leadscrew_app::tick_period::TickPeriod;
+use static_cell::StaticCell;
+
+use crate::clocks::TIMER_HZ;
+use crate::isr_cell::IsrCell;
+use crate::machine::Machine;
+use crate::converter::Output;
+use crate::{encoder, flash, lines, watchdog};
+
+/// Ticks that thread mode may be behind.
+const QUEUE: usize = 24;
+/// A tick has to end within this part of its period, in 1/8.
+const BUDGET: u32 = 6;
+
+static TICK: IsrCell<TickState> = IsrCell::empty();
+/// Counts of the tick.
+pub static COUNTERS: Counters = Counters::new();
+/// "There are reports."
+pub static READY: Ready = Ready::new();
+/// Keeps axis and store apart.
+pub static INTERLOCK: Interlock = Interlock::new();
+
+struct TickState {
+    runtime: Runtime<&'static mut AxisControl<Machine>>,
+    machine: Machine,
+    output: Output,
+    /// Clocks of TIM5 from tick to tick.
+    period: u32,
+    budget: u32,
+    /// Time of the last tick; none before the first.
+    last: Option<u32>,
+}
+
+/// When the tick was due.
+struct Due(u32);
+
+impl TickTimer for Due {
+    fn since_due(&self) -> u32 {
+        encoder::now().wrapping_sub(self.0)
+    }
+
+    fn is_due_again(&self) -> bool {
+        pac::TIM8.sr().read().uif()
+    }
+}
+
+/// Hands the interrupt its state; to be called once, with the interrupt masked. Gives what the ticks leave.
+pub fn wire(
+    control: &'static mut AxisControl<Machine>,
+    machine: Machine,
+    output: Output,
+    tick_hz: f64,
+) -> Consumer<'static, Report> {
+    static REPORTS: StaticCell<Queue<Report, QUEUE>> = StaticCell::new();
+    let (producer, reports) = REPORTS.init(Queue::new()).split();
+    let period = (f64::from(TIMER_HZ) / tick_hz) as u32;
+    let budget = period / 8 * BUDGET;
+    let state = TickState {
+        runtime: Runtime::new(control, producer, &COUNTERS, budget),
+        machine,
+        output,
+        period,
+        budget,
+        last: None,
+    };
+    // Masked, so nobody else has it.
+    TICK.put(state);
+    reports
+}
+
+/// Sets the timer up and starts it.
+pub fn start(period: TickPeriod) {
+    let timer = pac::TIM8;
+    timer.psc().write_value(period.divider - 1);
+    timer.arr().write(|w| w.set_arr(period.counts - 1));
+    // The generated update takes the divider over and is no tick.
+    timer.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
+    timer.egr().write(|w| w.set_ug(true));
+    timer.sr().write(|_| {});
+    timer.cr2().write(|w| w.set_mms(Mms::UPDATE));
+    timer.dier().write(|w| w.set_uie(true));
+    timer.cr1().modify(|w| w.set_cen(true));
+}
+
+/// No tick comes any more.
+pub fn stop() {
+    pac::TIM8.cr1().modify(|w| w.set_cen(false));
+    pac::TIM8.dier().write(|_| {});
+}
+
+#[interrupt]
+fn TIM8_UP_TIM13() {
+    // A zero clears a flag, and a one leaves it. First: the next update flags anew.
+    pac::TIM8.sr().write(|w| {
+        w.0 = u32::MAX;
+        w.set_uif(false);
+    });
+    TICK.with(TickState::run);
+    NVIC::pend(interrupt::SDIO);
+}
+
+/// The tick wakes nobody itself. The line is of a peripheral that this board does not use.
+#[interrupt]
+fn SDIO() {
+    READY.signal(());
+}
+
+impl TickState {
+    fn run(&mut self) {
+        let (sample, progress) = encoder::sample();
+        let missed = self.missed(sample.time);
+        self.machine.sample(sample, progress, missed);
+        let due = Due(sample.time);
+        let report = self.runtime.run(&due, Some(&self.machine));
+        let outputs = report.record.put_out();
+        lines::put_out(&outputs);
+        self.machine.readback = Some(self.output.put(outputs.command));
+        if missed == 0 && !due.is_due_again() && due.since_due() <= self.budget {
+            watchdog::feed();
+        }
+    }
+
+    /// Ticks that did not run before this one.
+    fn missed(&mut self, time: u32) -> u16 {
+        let Some(last) = self.last.replace(time) else {
+            return 0;
+        };
+        // Asked in every tick: it is of the time since the last one.
+        let has_stalled = flash::take_stall();
+        let passed = time.wrapping_sub(last).wrapping_add(self.period / 2);
+        if has_stalled || passed < 2 * self.period {
+            return 0;
+        }
+        let missed = (passed / self.period).saturating_sub(1);
+        u16::try_from(missed).unwrap_or(u16::MAX)
+    }
+}
