@@ -49,13 +49,7 @@ const fn pin(port: u8, number: u8, mode: Mode, pull: Pull) -> Pin {
     }
 }
 
-const fn alternate(
-    port: u8,
-    number: u8,
-    function: u8,
-    signal: &'static str,
-    pull: Pull,
-) -> Pin {
+const fn alternate(port: u8, number: u8, function: u8, signal: &'static str, pull: Pull) -> Pin {
     pin(port, number, Mode::Alternate(function, signal), pull)
 }
 

@@ -27,7 +27,7 @@ const FIXED: &str = r#"
     program-time = 128
     erase-time = 2000000
   }
-  object sram "ram" { size = 512K }
+  object sram "ram" { size = 128K }
   object ccm  "ram" { size = 64K }
   object rcc "st.rcc" { clock = hse, variant = "f4", hse = 8000000 }
   object pwr "st.pwr" { clock = hse, variant = "f4" }
@@ -55,7 +55,7 @@ const FIXED: &str = r#"
   map mem 0x00000000 size flash = syscfg.boot
   map mem 0x08000000 size flash = eflash.array
   map mem 0x10000000 size 64K   = ccm
-  map mem 0x20000000 size 512K  = sram
+  map mem 0x20000000 size 128K  = sram
   map mem 0x40003000 size 0x14  = iwdg
   map mem 0x40007000 size 0x08  = pwr
   map mem 0x40013800 size 0x24  = syscfg
@@ -69,7 +69,7 @@ const FIXED: &str = r#"
   map mem 0x40026000 size 0xd0  = dma1
   map mem 0x40026400 size 0xd0  = dma2
   map mem 0xe0042000 size 0x10  = dbgmcu
-  map dmabus 0x20000000 size 512K = sram
+  map dmabus 0x20000000 size 128K = sram
 
   wire iwdg.reset -> rcc.iwdgrst
   wire iwdg.reset -> reset.in

@@ -10,8 +10,8 @@ use crate::session::{BOOT_MS, Board};
 const TICK_TIMER: u32 = 0x4001_0400;
 /// Number of the tick's exception.
 const TICK: u16 = 60;
-/// Where the tests put what a panic points to: in RAM, below the stack's end.
-const LOCATION: u32 = 0x2001_ff00;
+/// Where the tests put what a panic points to: in the memory of the stack, at its far end.
+const LOCATION: u32 = 0x1000_0100;
 /// Longest time from a failure to outputs that are safe: the watchdog's at its slowest, and a tick.
 const LONGEST_MS: u64 = 22;
 

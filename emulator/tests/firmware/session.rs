@@ -23,6 +23,8 @@ pub struct Board {
     axis: Rc<RefCell<EmulatedAxis>>,
     /// When the power is cut, and the flash that is left then.
     cut: Rc<RefCell<Cut>>,
+    /// Time at which this line was opened: a line's clock begins then.
+    opened: Duration,
 }
 
 #[derive(Default)]
@@ -45,6 +47,7 @@ impl Board {
         Self {
             axis: Rc::new(RefCell::new(axis)),
             cut: Rc::default(),
+            opened: Duration::ZERO,
         }
     }
 
@@ -87,7 +90,11 @@ impl Board {
             seed: Some(1),
             ..Options::default()
         };
-        let opened = Axis::open(self.clone(), options);
+        let line = Self {
+            opened: self.with(|axis| Duration::from_secs_f64(axis.seconds())),
+            ..self.clone()
+        };
+        let opened = Axis::open(line, options);
         opened
             .unwrap_or_else(|error| panic!("{error}; {}", self.with(|axis| axis.part().describe())))
     }
@@ -107,7 +114,7 @@ impl Line for Board {
             }
             return Err(io::ErrorKind::BrokenPipe.into());
         }
-        axis.exchange(out, received)
+        Ok(axis.exchange(out, received)?.saturating_sub(self.opened))
     }
 
     fn name(&self) -> String {

@@ -19,7 +19,7 @@ use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
 use leadscrew::telemetry::Record;
 use leadscrew_app::axis_control::{AxisControl, Inlet};
-use leadscrew_app::link::{Boot, Link, Loaded, Memory, WORDS};
+use leadscrew_app::link::{Boot, Link, Loaded, Maps, WORDS, WorkMemory};
 use leadscrew_app::modbus::Panel as _;
 use leadscrew_app::queues::Queues;
 use leadscrew_app::report::Report;
@@ -236,8 +236,9 @@ impl Firmware {
                 work_memory: 4 * WORDS as u32,
                 lead_ticks: 4,
             },
-            queues: Box::leak(Box::new(Queues::new())),
-            memory: Box::leak(Box::new(Memory::new())),
+            queues: Box::leak(Box::new(<Queues>::new())),
+            work: Box::leak(Box::new(WorkMemory::<WORDS, WORDS>::new())).lend(),
+            maps: Box::leak(Box::new(Maps::<2>::new())).places(),
             screw: Box::leak(Box::new([Stretch::default(); POINTS.1])),
             interlock: Box::leak(Box::new(Interlock::new())),
             counters,
