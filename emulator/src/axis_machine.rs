@@ -102,6 +102,8 @@ pub struct AxisMachine {
     /// Since when the outputs are as they are.
     changed_at: [u64; 2],
     put_out: PutOut,
+    /// When the converter was given its last value.
+    converted_at: u64,
 }
 
 impl AxisMachine {
@@ -150,6 +152,7 @@ impl AxisMachine {
             edges: 0,
             changed_at: [0; 2],
             put_out: PutOut::default(),
+            converted_at: 0,
         };
         machine.announce();
         Ok(Arc::new(Mutex::new(machine)))
@@ -195,6 +198,12 @@ impl AxisMachine {
     pub fn is_safe(&self) -> bool {
         // Half of the converter's last bit.
         !self.enable && !self.brake_released && self.converter.volts().abs() < 2e-4
+    }
+
+    /// The clock at which the converter was given its last value.
+    #[must_use]
+    pub const fn converted_at(&self) -> u64 {
+        self.converted_at
     }
 
     /// What was put out since this was asked last.
@@ -400,7 +409,13 @@ impl Surroundings for AxisMachine {
 
     fn output(&mut self, clock: u64, pin: Pin, level: bool) {
         match pin {
-            wired::CONVERTER_SYNC => self.converter.select(level),
+            wired::CONVERTER_SYNC => {
+                let before = self.converter.values();
+                self.converter.select(level);
+                if self.converter.values() != before {
+                    self.converted_at = clock;
+                }
+            }
             wired::CONVERTER_LOAD => self.converter.hold(level),
             wired::CONVERTER_RESET => self.converter.reset(level),
             wired::ENABLE if level != self.enable => {

@@ -35,6 +35,7 @@ pub struct Ad5761r {
     in_reset: bool,
     frames: u64,
     broken_frames: u64,
+    values: u64,
 }
 
 impl Ad5761r {
@@ -42,7 +43,7 @@ impl Ad5761r {
     pub fn select(&mut self, level: bool) {
         if !level {
             self.frame = Some((0, 0));
-        } else if let Some((bits, count)) = self.frame.take() {
+        } else if let Some((bits, count)) = self.frame.take().filter(|&(_, count)| count > 0) {
             self.frames += 1;
             if count == 24 && !self.in_reset {
                 self.obey(bits);
@@ -111,6 +112,12 @@ impl Ad5761r {
         (self.frames, self.broken_frames)
     }
 
+    /// Values that it was given to put out at once.
+    #[must_use]
+    pub const fn values(&self) -> u64 {
+        self.values
+    }
+
     fn obey(&mut self, bits: u32) {
         let command = (bits >> 16 & 0xf) as u8;
         let data = bits as u16;
@@ -123,7 +130,10 @@ impl Ad5761r {
                 }
             }
             UPDATE => self.output = self.input,
-            WRITE_AND_UPDATE => (self.input, self.output) = (data, data),
+            WRITE_AND_UPDATE => {
+                (self.input, self.output) = (data, data);
+                self.values += 1;
+            }
             WRITE_CONTROL => self.set_control(data),
             RESET_DATA => self.clear(),
             READ_INPUT => self.answer_with(command, self.input),

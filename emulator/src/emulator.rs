@@ -151,8 +151,12 @@ pub trait Emulator {
     /// Reads a word as the program does, with what reading does to a register.
     fn fetch(&mut self, address: u32) -> Option<u32>;
 
-    /// Lets the program counter jump: the program hangs, or runs astray.
-    fn jump(&mut self, address: u32);
+    /// Lets the program go on at an address with `argument` in its first register, from wherever it is: to call what it
+    /// would not call, or to lead it astray.
+    fn jump(&mut self, address: u32, argument: u32);
+
+    /// Number of the exception that is handled, 0 for none.
+    fn exception(&self) -> u16;
 
     /// Sends bytes to the part, one after the other at its baud rate.
     fn send(&mut self, port: Serial, bytes: &[u8]);

@@ -242,3 +242,36 @@ fn a_wrong_function_is_found() {
     // PE9 is a pin of the larger package alone.
     assert!(!self::chip("stm32f405rg").has_pin("PE9"));
 }
+
+#[allow(dead_code, reason = "the pins are looked up by number here")]
+#[path = "../../boards/stm32f4/src/pins.rs"]
+mod pins;
+
+#[test]
+fn the_firmware_sets_the_pins_up_as_the_map_says() {
+    let mut set_up = BTreeSet::new();
+    for pin in pins::ALL {
+        let name = format!("P{}{}", char::from(pin.port), pin.number);
+        if let pins::Mode::Alternate(function, signal) = pin.mode {
+            set_up.insert((name, signal.to_owned(), Some(function)));
+        }
+    }
+    let mapped: BTreeSet<_> = USES
+        .iter()
+        .filter(|used| used.function.is_some())
+        .map(|used| {
+            let signal = format!("{}_{}", used.peripheral, used.signal);
+            (used.pin.to_owned(), signal, used.function)
+        })
+        .collect();
+    assert_eq!(set_up, mapped);
+    let named: BTreeSet<_> = pins::ALL
+        .iter()
+        .map(|pin| format!("P{}{}", char::from(pin.port), pin.number))
+        .collect();
+    assert_eq!(named.len(), pins::ALL.len());
+    for name in &named {
+        let is_known = USES.iter().any(|used| used.pin == name) || LINES.contains(&name.as_str());
+        assert!(is_known, "{name} is not on the map");
+    }
+}

@@ -17,6 +17,8 @@ const CONVERSION: u64 = 492 * 8;
 pub struct Adc {
     around: SharedSurroundings,
     registers: [u32; 19],
+    /// Of all three converters together.
+    common: u32,
     /// When the conversion ends.
     ends: u64,
     is_asking: bool,
@@ -32,12 +34,15 @@ impl std::fmt::Debug for Adc {
 const STATUS: usize = 0;
 const CONTROL: usize = 2;
 const DATA: usize = 19;
+/// Place of the control register that all three have in common.
+const COMMON: usize = 0x304 / 4;
 
 impl Adc {
     pub const fn new(around: SharedSurroundings) -> Self {
         Self {
             around,
             registers: [0; 19],
+            common: 0,
             ends: NEVER,
             is_asking: false,
         }
@@ -47,6 +52,9 @@ impl Adc {
 impl Model for Adc {
     fn read(&mut self, offset: u64, _now: u64, looks_only: bool) -> u32 {
         let place = offset as usize / 4;
+        if place == COMMON {
+            return self.common;
+        }
         if place != DATA {
             return self.registers.get(place).copied().unwrap_or_default();
         }
@@ -60,6 +68,7 @@ impl Model for Adc {
     fn write(&mut self, offset: u64, value: u32, now: u64) {
         let place = offset as usize / 4;
         match place {
+            COMMON => self.common = value,
             STATUS => self.registers[STATUS] &= value,
             CONTROL => {
                 self.registers[CONTROL] = value & !START;

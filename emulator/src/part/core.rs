@@ -115,9 +115,11 @@ impl Device for Core {
         Ok(())
     }
 
-    fn reset(&self, kind: ResetKind) {
+    /// Every reset of the part resets all of the core; rsemu's warm one leaves the interrupt controller as it was. What
+    /// drives its lines tells their levels anew.
+    fn reset(&self, _kind: ResetKind) {
         self.state.stands.store(false, Ordering::Relaxed);
-        self.cpu.reset(kind);
+        self.cpu.reset(ResetKind::Cold);
     }
 
     fn is_runnable(&self) -> bool {

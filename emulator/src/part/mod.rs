@@ -268,8 +268,16 @@ impl Emulator for Part {
         word.ok().map(|word| word as u32)
     }
 
-    fn jump(&mut self, address: u32) {
-        let _ = self.with_core(|core| core.cpu().set_pc(address));
+    fn jump(&mut self, address: u32, argument: u32) {
+        let _ = self.with_core(|core| {
+            core.cpu().set_reg(0, argument);
+            core.cpu().set_pc(address & !1);
+        });
+    }
+
+    fn exception(&self) -> u16 {
+        self.with_core(|core| core.cpu().current_exception().0)
+            .unwrap_or_default()
     }
 
     fn send(&mut self, port: Serial, bytes: &[u8]) {

@@ -11,8 +11,8 @@ use rsemu::machine::Instance;
 
 use super::registers::{Model, Timed};
 
-/// Bytes that the registers of an own model take.
-const SIZE: u64 = 0x50;
+/// Bytes that the registers of an own model take at the most.
+const SIZE: u64 = 0x400;
 
 /// A model with its registers.
 #[derive(Debug)]

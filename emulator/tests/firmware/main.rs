@@ -4,6 +4,8 @@
 
 mod boot;
 mod motion;
+mod safety;
 mod session;
+mod store;
 #[path = "../../../host/tests/support/tuned.rs"]
 mod tuned;

@@ -1,0 +1,107 @@
+//! What becomes of an axis in motion whose firmware fails.
+
+use leadscrew_client::Axis;
+use leadscrew_emulator::Emulator as _;
+
+use crate::motion::set_up;
+use crate::session::{BOOT_MS, Board};
+
+/// Control register of the tick's timer.
+const TICK_TIMER: u32 = 0x4001_0400;
+/// Number of the tick's exception.
+const TICK: u16 = 60;
+/// Where the tests put what a panic points to: in the memory of the stack, at its far end.
+const LOCATION: u32 = 0x1000_0100;
+/// Longest time from a failure to outputs that are safe: the watchdog's at its slowest, and a tick.
+const LONGEST_MS: u64 = 22;
+
+/// An axis in motion.
+fn moving() -> (Board, Axis) {
+    let board = Board::blank();
+    let mut tool = board.tool();
+    set_up(&mut tool);
+    tool.enable().unwrap();
+    tool.jog(3000.0).unwrap();
+    tool.wait(std::time::Duration::from_millis(300)).unwrap();
+    let (is_enabled, command) = board.machine(|machine| (machine.relays().0, machine.command()));
+    assert!(is_enabled && command.abs() > 0.1, "{is_enabled} {command}");
+    (board, tool)
+}
+
+/// The outputs are safe soon, the part starts anew once, and the axis can be used again.
+fn is_safe_and_comes_back(board: &Board, within_ms: u64) {
+    board.run_ms(within_ms);
+    assert!(board.machine(|machine| machine.is_safe()));
+    board.machine(|machine| machine.take_put_out());
+    board.run_ms(BOOT_MS);
+    assert_eq!(board.with(|axis| axis.part().resets()), 1);
+    let put_out = board.machine(|machine| machine.take_put_out());
+    assert!(!put_out.enabled && !put_out.brake_released, "{put_out:?}");
+    let mut tool = board.tool();
+    assert!(!tool.status().unwrap().is_enabled);
+}
+
+/// Lets time pass until the core handles the tick.
+fn into_the_tick(board: &Board) {
+    for _ in 0..2_000 {
+        board.with(|axis| axis.run(1_680).unwrap());
+        if board.with(|axis| axis.part().exception()) == TICK {
+            return;
+        }
+    }
+    panic!("there is no tick");
+}
+
+#[test]
+fn the_watchdog_ends_a_tick_that_does_not_come() {
+    let (board, _tool) = moving();
+    board.with(|axis| axis.part().poke(TICK_TIMER, 0));
+    is_safe_and_comes_back(&board, LONGEST_MS);
+}
+
+#[test]
+fn the_watchdog_ends_a_tick_that_hangs() {
+    let (board, _tool) = moving();
+    into_the_tick(&board);
+    let loops = board.with(|axis| {
+        let mut addresses = 0x0801_0000_u32..0x0808_0000;
+        let is_loop = |&address: &u32| {
+            axis.part().peek(address & !3).is_some_and(|word| {
+                let half = if address & 2 == 0 { word } else { word >> 16 };
+                half as u16 == 0xe7fe
+            })
+        };
+        addresses.by_ref().step_by(2).find(is_loop)
+    });
+    let address = loops.unwrap_or_else(|| {
+        // No loop in the program: one in RAM.
+        board.with(|axis| axis.part().poke(LOCATION, 0xe7fe_e7fe));
+        LOCATION
+    });
+    board.with(|axis| axis.part().jump(address, 0));
+    is_safe_and_comes_back(&board, LONGEST_MS);
+}
+
+#[test]
+fn a_panic_is_safe_at_once() {
+    let (board, _tool) = moving();
+    let (address, _) = board
+        .with(|axis| axis.elf().symbol("unwrap_failed"))
+        .expect("a program that can panic");
+    board.with(|axis| {
+        // File, its length, line, column.
+        for (place, word) in [0x0801_0000, 4, 1, 1].into_iter().enumerate() {
+            axis.part().poke(LOCATION + 4 * place as u32, word);
+        }
+        axis.part().jump(address, LOCATION);
+    });
+    is_safe_and_comes_back(&board, 1);
+}
+
+#[test]
+fn a_hard_fault_is_safe_at_once() {
+    let (board, _tool) = moving();
+    // There is nothing there.
+    board.with(|axis| axis.part().jump(0x6000_0000, 0));
+    is_safe_and_comes_back(&board, 1);
+}
