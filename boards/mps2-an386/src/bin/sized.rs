@@ -24,7 +24,7 @@ use leadscrew::params::AxisParams;
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
 use leadscrew_app::axis_control::{AxisControl, Inlet};
-use leadscrew_app::link::{Boot, Link, Memory, WORDS};
+use leadscrew_app::link::{Boot, Link, Maps, WORDS, WorkMemory};
 use leadscrew_app::modbus::{Config, Modbus};
 use leadscrew_app::queues::Queues;
 use leadscrew_app::report::Report;
@@ -144,7 +144,9 @@ impl NorFlash for Flash {
 #[entry]
 fn main() -> ! {
     static QUEUES: ConstStaticCell<Queues> = ConstStaticCell::new(Queues::new());
-    static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
+    static WORK: ConstStaticCell<WorkMemory<WORDS, WORDS>> =
+        ConstStaticCell::new(WorkMemory::new());
+    static MAPS: ConstStaticCell<Maps> = ConstStaticCell::new(Maps::new());
     static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
         ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
     static RECORDS: ConstStaticCell<Queue<Report, 16>> = ConstStaticCell::new(Queue::new());
@@ -164,7 +166,8 @@ fn main() -> ! {
             lead_ticks: 16,
         },
         queues: QUEUES.take(),
-        memory: MEMORY.take(),
+        work: WORK.take().lend(),
+        maps: MAPS.take().places(),
         screw: SCREW.take(),
         interlock: &INTERLOCK,
         counters: &COUNTERS,
@@ -242,10 +245,14 @@ fn outside() -> u32 {
 }
 
 fn stop_here() -> ! {
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 #[panic_handler]
 fn stop(_: &PanicInfo<'_>) -> ! {
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }

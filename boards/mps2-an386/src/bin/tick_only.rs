@@ -95,7 +95,9 @@ impl TickTimer for Timer {
 
 #[entry]
 fn main() -> ! {
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 #[exception]
