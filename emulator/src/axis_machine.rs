@@ -115,7 +115,7 @@ impl AxisMachine {
         Self::of(&workshop(base, STEP_HZ, seed))
     }
 
-    /// The machine of a scenario, whose rate has to be [`STEP_HZ`].
+    /// The machine of a scenario, whose rate has to be 20 kHz.
     ///
     /// # Errors
     /// A parameter out of range.
