@@ -35,6 +35,10 @@ impl<C: Control> Control for &mut C {
     fn missed(&mut self) -> C::Record {
         C::missed(self)
     }
+
+    fn overlong(&mut self) {
+        C::overlong(self);
+    }
 }
 
 /// The timer whose interrupt is the tick.
@@ -261,6 +265,38 @@ mod tests {
             (counts.ticks, counts.worst_start, counts.worst_end),
             (1, 3, 50)
         );
+    }
+
+    #[test]
+    fn a_control_that_lies_elsewhere_is_told_of_a_tick_that_ended_too_late() {
+        struct Told(bool);
+
+        impl Control for Told {
+            type Inputs = u32;
+            type Record = u32;
+
+            fn step(&mut self, inputs: &u32) -> u32 {
+                *inputs
+            }
+
+            fn missed(&mut self) -> u32 {
+                0
+            }
+
+            fn overlong(&mut self) {
+                self.0 = true;
+            }
+        }
+
+        let told = Box::leak(Box::new(Told(false)));
+        let queue: &'static mut Queue<u32, 3> = Box::leak(Box::new(Queue::new()));
+        let (producer, _records) = queue.split();
+        let counters = Box::leak(Box::new(Counters::new()));
+        let mut runtime = Runtime::new(told, producer, counters, 50);
+        runtime.run(&Timer::ending_at(50), Some(&1));
+        assert!(!runtime.control.0);
+        runtime.run(&Timer::ending_at(51), Some(&1));
+        assert!(runtime.control.0);
     }
 
     #[test]
