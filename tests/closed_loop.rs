@@ -201,8 +201,8 @@ fn another_estimator_in_full_motion_does_not_kick() {
         commands.push(outputs.command.to_num::<f64>());
         // At 150 d/tick, and again while accelerating back.
         match outputs.tick {
-            1200 => simulation.axis.reconfigure(config("simple")).unwrap(),
-            2900 => simulation.axis.reconfigure(config("gaussian")).unwrap(),
+            1200 => simulation.axis.reconfigure(&config("simple")).unwrap(),
+            2900 => simulation.axis.reconfigure(&config("gaussian")).unwrap(),
             _ => {}
         }
     }

@@ -283,9 +283,9 @@ impl<'m> Axis<'m> {
     ///
     /// # Errors
     /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
-    pub fn reconfigure(&mut self, config: AxisConfig) -> Result<(), ReconfigureError> {
+    pub fn reconfigure(&mut self, config: &AxisConfig) -> Result<(), ReconfigureError> {
         if self.outputs.enabled && self.outputs.moving {
-            ReconfigureError::check(&self.config, &config)?;
+            ReconfigureError::check(&self.config, config)?;
         }
         if self.sources.is_tied() && config.sources != self.config.sources {
             return Err(ReconfigureError::Sources);
@@ -303,7 +303,7 @@ impl<'m> Axis<'m> {
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
         let is_travel_new = config.travel != self.config.travel;
-        self.config = config;
+        self.config = *config;
         if is_travel_new {
             self.count_from(self.homing.origin());
         }

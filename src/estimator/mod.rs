@@ -225,12 +225,21 @@ pub(crate) const fn saturate(value: i64) -> i32 {
     }
 }
 
-/// The list: `Variant => module, "name", default config`.
+/// An estimator from its configuration, with gains where it has some that are solved for.
+macro_rules! started {
+    ($module:ident, $config:ident, $gains:ident) => {
+        $module::Estimator::new(*$config)
+    };
+    ($module:ident, $config:ident, $gains:ident, solved) => {
+        $module::Estimator::with_gains(*$config, $gains)
+    };
+}
+
+/// The list: `Variant => module, "name", default config`, and `solved` for those with gains that are solved for.
 macro_rules! estimators {
-    ($($(#[$doc:meta])* $variant:ident => $module:ident, $name:literal, $default:expr;)*) => {
+    ($($(#[$doc:meta])* $variant:ident => $module:ident, $name:literal, $default:expr $(, $solved:ident)?;)*) => {
         /// Configuration of any estimator.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #[expect(clippy::large_enum_variant, reason = "one per axis, and no heap to move the large one to")]
         pub enum EstimatorConfig {
             $($(#[$doc])* $variant($module::Config),)*
         }
@@ -277,7 +286,7 @@ macro_rules! estimators {
 
             /// Ticks after which the first sample's influence is below 1e-6.
             #[must_use]
-            pub const fn warm_up_ticks(&self) -> u32 {
+            pub fn warm_up_ticks(&self) -> u32 {
                 match self { $(Self::$variant(config) => config.warm_up_ticks(),)* }
             }
         }
@@ -292,11 +301,18 @@ macro_rules! estimators {
         }
 
         impl Estimator {
-            /// The estimator that `config` describes, waiting for its first sample.
+            /// The estimator that `config` describes, waiting for its first sample. Outside the tick: an observer's
+            /// gains are solved for.
             #[must_use]
-            pub const fn new(config: EstimatorConfig) -> Self {
+            pub fn new(config: EstimatorConfig) -> Self {
+                Self::with_gains(&config, &config.gains().unwrap_or(observer::Gains::NONE))
+            }
+
+            /// The same, an observer with gains that were [solved](EstimatorConfig::gains) for it.
+            #[must_use]
+            pub fn with_gains(config: &EstimatorConfig, gains: &observer::Gains) -> Self {
                 match config {
-                    $(EstimatorConfig::$variant(config) => Self::$variant($module::Estimator::new(config)),)*
+                    $(EstimatorConfig::$variant(config) => Self::$variant(started!($module, config, gains $(, $solved)?)),)*
                 }
             }
 
@@ -339,5 +355,16 @@ estimators! {
     /// Local polynomial through the edges.
     Polynomial => polynomial, "polynomial", polynomial::Config::new(15, polynomial::Answer::Newest);
     /// Kalman-type observer on edge times and the drive's command.
-    Observer => observer, "observer", observer::Config::of_16k20f3();
+    Observer => observer, "observer", observer::Config::of_16k20f3(), solved;
+}
+
+impl EstimatorConfig {
+    /// The gains of an observer, solved for: some million operations, outside the tick. `None`: it is none.
+    #[must_use]
+    pub fn gains(&self) -> Option<observer::Gains> {
+        match self {
+            Self::Observer(config) => Some(observer::Gains::solve(config)),
+            _ => None,
+        }
+    }
 }

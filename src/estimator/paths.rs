@@ -8,6 +8,7 @@
 //! One estimator serves all paths unless a second one is given; a second one costs its own update alone, since
 //! the sample of the tick's edges is made once.
 
+use super::observer::Gains;
 use super::{Delay, Estimate, Estimator, EstimatorConfig, Evidence, Variances};
 use crate::uncertainty::EdgeNoise;
 use crate::units::{Position, RangeError, Velocity, checked};
@@ -51,13 +52,16 @@ pub struct Config {
     first: EstimatorConfig,
     second: Option<EstimatorConfig>,
     paths: Paths,
+    /// Those of the observer among them.
+    gains: Gains,
 }
 
 impl Config {
-    /// `first` and, where it is given, `second` on `paths`.
+    /// `first` and, where it is given, `second` on `paths`; the gains of an observer are solved for.
     ///
     /// # Errors
-    /// [`RangeError`] for a path to a second estimator that is not given, or a position that lags.
+    /// [`RangeError`] for a path to a second estimator that is not given, a position that lags, or two observers of
+    /// different parameters: there is memory for the gains of one.
     pub fn new(
         first: EstimatorConfig,
         second: Option<EstimatorConfig>,
@@ -67,22 +71,33 @@ impl Config {
         let seconds = used.iter().filter(|path| **path == Choice::Second).count();
         let most = if second.is_some() { 3.0 } else { 0.0 };
         checked("paths to the second estimator", seconds as f64, 0.0, most)?;
-        let config = Self {
+        let observers = match (&first, &second) {
+            (EstimatorConfig::Observer(one), Some(EstimatorConfig::Observer(other)))
+                if one != other =>
+            {
+                2.0
+            }
+            _ => 1.0,
+        };
+        checked("observers of different parameters", observers, 0.0, 1.0)?;
+        if paths.position == PositionFeedback::Estimate {
+            let of_velocity = chosen(paths.velocity, &first, second.as_ref());
+            let lag: f64 = of_velocity.lags().position.to_num();
+            checked("lag of the fed back position, ticks", lag, 0.0, 0.0)?;
+        }
+        Ok(Self {
+            gains: gains_of(&first, second.as_ref()),
             first,
             second,
             paths,
-        };
-        if paths.position == PositionFeedback::Estimate {
-            let lag: f64 = config.of(paths.velocity).lags().position.to_num();
-            checked("lag of the fed back position, ticks", lag, 0.0, 0.0)?;
-        }
-        Ok(config)
+        })
     }
 
     /// One estimator for all; the position is the count's.
     #[must_use]
     pub fn single(first: EstimatorConfig) -> Self {
         Self {
+            gains: gains_of(&first, None),
             first,
             second: None,
             paths: Paths::default(),
@@ -92,10 +107,7 @@ impl Config {
     /// The estimator of a path.
     #[must_use]
     pub fn of(&self, choice: Choice) -> &EstimatorConfig {
-        match (choice, &self.second) {
-            (Choice::Second, Some(second)) => second,
-            _ => &self.first,
-        }
+        chosen(choice, &self.first, self.second.as_ref())
     }
 
     /// Which estimator serves which path.
@@ -127,6 +139,25 @@ impl Config {
     }
 }
 
+/// The estimator of a path.
+const fn chosen<'c>(
+    choice: Choice,
+    first: &'c EstimatorConfig,
+    second: Option<&'c EstimatorConfig>,
+) -> &'c EstimatorConfig {
+    match (choice, second) {
+        (Choice::Second, Some(second)) => second,
+        _ => first,
+    }
+}
+
+/// Gains of the observer among them.
+fn gains_of(first: &EstimatorConfig, second: Option<&EstimatorConfig>) -> Gains {
+    let gains = first.gains();
+    let gains = gains.or_else(|| second.and_then(EstimatorConfig::gains));
+    gains.unwrap_or(Gains::NONE)
+}
+
 /// The estimators.
 // They are large, and so come last.
 #[derive(Clone, Debug)]
@@ -153,8 +184,9 @@ impl Estimators {
             ..
         } = config.paths;
         Self {
-            first: Estimator::new(config.first),
-            second: config.second.map(Estimator::new),
+            first: Estimator::with_gains(&config.first, &config.gains),
+            second: (config.second.as_ref())
+                .map(|second| Estimator::with_gains(second, &config.gains)),
             paths: config.paths,
             reads_edges: config.reads_edges(),
             is_display_alone: [velocity, acceleration, display]

@@ -82,9 +82,9 @@ fn a_table_that_parameters_leave_no_room_for_is_let_go_with_them() {
     let table = ScrewTable::build(&points, &mut memory).unwrap();
     let mut axis = Axis::new(config(with_backlash(0.0)));
     axis.set_screw_table(Some(table)).unwrap();
-    axis.reconfigure(config(with_backlash(0.001))).unwrap();
+    axis.reconfigure(&config(with_backlash(0.001))).unwrap();
     assert!(axis.compensation().table().is_some());
-    axis.reconfigure(config(CompensationParams::default()))
+    axis.reconfigure(&config(CompensationParams::default()))
         .unwrap();
     assert!(axis.compensation().table().is_none());
 }

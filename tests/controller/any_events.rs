@@ -167,7 +167,7 @@ impl Watched {
             } => {
                 let before = self.limit;
                 self.axis
-                    .reconfigure(config(estimator, controller, limit, slew))
+                    .reconfigure(&config(estimator, controller, limit, slew))
                     .unwrap();
                 self.limit = Command::from_num(limit);
                 self.slew = Command::saturating_from_num(slew);

@@ -113,7 +113,7 @@ fn a_new_configuration_does_not_move_the_output_and_a_new_estimator_starts_afres
         ..Gains::default()
     };
     let exponential = 1;
-    axis.reconfigure(config(
+    axis.reconfigure(&config(
         exponential,
         controller_config(&gains, 0.0, 0.1, 50.0),
         1.0,

@@ -34,7 +34,8 @@ fn a_move_there_and_back_ties_the_map_once_and_for_all() {
     let mut axis = simulation.axis;
     let tied = (Some(MapState::Tied), MapHealth { ties: 1, slips: 0 });
     assert_eq!((axis.map_state(), axis.map_health()), tied);
-    axis.reconfigure(*axis.config()).unwrap();
+    let config = *axis.config();
+    axis.reconfigure(&config).unwrap();
     assert_eq!((axis.map_state(), axis.map_health()), tied);
     axis.set_map(None);
     assert_eq!(axis.map_state(), None);

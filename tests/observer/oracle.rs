@@ -1,6 +1,6 @@
 //! Fixed point against the same recursion in `f64`.
 
-use leadscrew::estimator::observer::{Config, Model, ObserverParams};
+use leadscrew::estimator::observer::{Config, Gains, Model, ObserverParams};
 use leadscrew::units::{AxisScale, Command};
 use proptest::prelude::*;
 
@@ -15,6 +15,7 @@ const BOUNDS: [f64; 3] = [1e-5, 4e-6, 3e-6];
 /// The observer with the drive's model, from its description.
 struct Oracle {
     config: Config,
+    gains: Gains,
     /// x relative to the count, v, a, δ.
     state: [f64; 4],
     commands: Vec<f64>,
@@ -83,7 +84,7 @@ impl Oracle {
     }
 
     fn correct(&mut self, innovation: f64, octave: i32) {
-        let gains = self.config.gains(Model::Drive, octave);
+        let gains = self.gains.of(Model::Drive, octave);
         for (part, gain) in self.state.iter_mut().zip(gains) {
             *part += gain * innovation;
         }
@@ -108,6 +109,7 @@ fn worst_error(steps: &[(f64, u32)], disturbance: f64) -> [f64; 3] {
     let mut hand = Hand::new(config);
     let mut oracle = Oracle {
         config,
+        gains: Gains::solve(&config),
         state: [0.5, 0.0, 0.0, 0.0],
         commands: Vec::new(),
         silence: u32::MAX,

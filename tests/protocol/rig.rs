@@ -95,7 +95,7 @@ impl Port for Way {
     }
 
     fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal> {
-        self.axis.reconfigure(*config)?;
+        self.axis.reconfigure(config)?;
         Ok(Passed::Taken)
     }
 }

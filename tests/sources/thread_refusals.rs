@@ -105,7 +105,7 @@ fn what_cannot_be_cut_is_refused_before_anything_moves() {
     .quantise()
     .unwrap();
     assert_eq!(
-        turning.axis.reconfigure(config),
+        turning.axis.reconfigure(&config),
         Err(ReconfigureError::Sources)
     );
 }

@@ -18,7 +18,7 @@ fn limited(low_mm: f64, high_mm: f64) -> Lathe<'static> {
     let mut config = *lathe.axis.config();
     let [low, high] = [low_mm, high_mm].map(|mm| Position::from_num(mm * 1000.0));
     config.travel = Some(TravelLimits::new(low, high).unwrap());
-    lathe.axis.reconfigure(config).unwrap();
+    lathe.axis.reconfigure(&config).unwrap();
     lathe.axis.set_origin(Some(Position::from_num(ORIGIN_D)));
     lathe
 }

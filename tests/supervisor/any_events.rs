@@ -92,7 +92,7 @@ fn happen(rig: &mut Rig, plan: &Plan, event: &Event) {
             let mut params = plan.axis_params();
             params.supervisor.following_error_mm = error_mm;
             // Refused in motion where it would move the axis.
-            let _ = rig.axis.reconfigure(params.validate().unwrap());
+            let _ = rig.axis.reconfigure(&params.validate().unwrap());
         }
     }
 }

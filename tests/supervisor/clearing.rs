@@ -103,7 +103,7 @@ fn a_new_configuration_keeps_the_latched_fault() {
     rig.step();
     let first = rig.first();
     let config = *rig.axis.config();
-    rig.axis.reconfigure(config).unwrap();
+    rig.axis.reconfigure(&config).unwrap();
     rig.step();
     assert_eq!(
         (rig.first().trip, rig.first().tick),

@@ -111,11 +111,14 @@ impl<B> AxisControl<B> {
         }
     }
 
-    /// On a frame of its own, 12 KB: other ticks do without.
+    /// On a frame of its own, which other ticks do without.
     #[inline(never)]
     fn take_config(&mut self) {
-        if let Some((ticket, config)) = dequeue(&mut self.ends.configs) {
+        // In place until it is done: a configuration is large.
+        if let Some((ticket, config)) = self.ends.configs.peek() {
+            let ticket = *ticket;
             let result = self.axis.reconfigure(config).map_err(Refusal::from);
+            let _ = dequeue(&mut self.ends.configs);
             self.answer(ticket, result);
         }
     }

@@ -68,7 +68,8 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
     /// [`ParamError`] if not even the factory's parameters make an axis.
     pub fn start<B>(self) -> Result<(AxisControl<B>, Link<F>, Loaded), ParamError> {
         let (mut control, mut link) = (None, None);
-        let loaded = self.start_in(&mut control, &mut link)?;
+        let (_, _, loaded) =
+            self.start_in(|made| control.insert(made), |made| link.insert(made))?;
         // Both were made.
         match (control, link) {
             (Some(control), Some(link)) => Ok((control, link, loaded)),
@@ -76,16 +77,17 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
         }
     }
 
-    /// The same in place, for a board whose stack has no room for an axis and a link.
+    /// The same in place, for a board whose stack has no room for an axis and a link: each is put, once made, where
+    /// `control` and `link` have it.
     ///
     /// # Errors
     /// [`ParamError`] if not even the factory's parameters make an axis.
     #[inline(never)]
-    pub fn start_in<B>(
+    pub fn start_in<'c, 'l, B>(
         self,
-        control: &mut Option<AxisControl<B>>,
-        link: &mut Option<Link<F>>,
-    ) -> Result<Loaded, ParamError> {
+        control: impl FnOnce(AxisControl<B>) -> &'c mut AxisControl<B>,
+        link: impl FnOnce(Link<F>) -> &'l mut Link<F>,
+    ) -> Result<(&'c mut AxisControl<B>, &'l mut Link<F>, Loaded), ParamError> {
         let Self {
             flash,
             range,
@@ -119,16 +121,18 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
             found.settings = factory;
         }
         let (tick, captures_out, ends, captures) = queues.split();
-        let has_screw = give(
-            &mut found,
-            is_valid,
-            |config| AxisControl::new(Axis::new(*config), tick, captures_out, interlock),
-            control,
-        )?;
+        let control = make(&mut found.settings, |config| {
+            control(AxisControl::new(
+                Axis::new(*config),
+                tick,
+                captures_out,
+                interlock,
+            ))
+        })?;
         let loaded = Loaded {
             report: found.report,
             has_map: found.map.is_some(),
-            has_screw,
+            has_screw: found.give(control.axis_mut(), is_valid),
             is_storeless: store.is_none(),
         };
         let parts = Parts {
@@ -142,8 +146,8 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
             map_places,
             map: found.map,
         };
-        parts.link(&found.settings, link)?;
-        Ok(loaded)
+        let link = parts.link(&found.settings, link)?;
+        Ok((control, link, loaded))
     }
 }
 
@@ -153,23 +157,23 @@ fn check(settings: &mut Settings) -> Result<(), ParamError> {
     settings.validate().map(|_| ())
 }
 
-/// Makes the axis in its place; true if it has a screw table. On a frame of its own: an axis is large.
+/// Makes an axis of settings. Apart from both: what comes of validation is large, and so is an axis, and each is to have
+/// the stack for itself.
 #[inline(never)]
-fn give<B>(
-    found: &mut Found,
-    is_valid: bool,
-    make: impl FnOnce(&AxisConfig) -> AxisControl<B>,
-    place: &mut Option<AxisControl<B>>,
-) -> Result<bool, ParamError> {
-    let is_whole = found.report.is_clean() || found.report.source == Source::Defaults;
-    let config = found.settings.validate()?;
-    let axis = place.insert(make(&config)).axis_mut();
-    let map = found.map;
-    axis.set_map(map.and_then(|image| EncoderMap::from_bytes(image).ok()));
-    let has_screw = found.screw.is_some() && axis.set_screw_table(found.screw).is_ok();
-    axis.supervisor_mut()
-        .set_store_corrupt(!(is_whole && is_valid));
-    Ok(has_screw)
+fn make<'c, B>(
+    settings: &mut Settings,
+    make: impl FnOnce(&AxisConfig) -> &'c mut AxisControl<B>,
+) -> Result<&'c mut AxisControl<B>, ParamError> {
+    let config = settings.validate()?;
+    Ok(on_a_frame_of_its_own(&config, make))
+}
+
+#[inline(never)]
+fn on_a_frame_of_its_own<'c, B>(
+    config: &AxisConfig,
+    make: impl FnOnce(&AxisConfig) -> &'c mut AxisControl<B>,
+) -> &'c mut AxisControl<B> {
+    make(config)
 }
 
 /// What a link is made of.
@@ -188,7 +192,11 @@ struct Parts<F: NorFlash> {
 impl<F: NorFlash> Parts<F> {
     /// Makes the link in its place. On a frame of its own, too.
     #[inline(never)]
-    fn link(self, settings: &Settings, place: &mut Option<Link<F>>) -> Result<(), ParamError> {
+    fn link<'l>(
+        self,
+        settings: &Settings,
+        place: impl FnOnce(Link<F>) -> &'l mut Link<F>,
+    ) -> Result<&'l mut Link<F>, ParamError> {
         let motion = &settings.axis.motion;
         let scale = AxisScale::new(motion.counts_per_mm, settings.axis.tick_hz)?;
         let bench = Bench {
@@ -218,12 +226,11 @@ impl<F: NorFlash> Parts<F> {
             wants_restart: false,
             reset: Default::default(),
         };
-        *place = Some(Link {
+        Ok(place(Link {
             service: Service::new(self.identity, settings)?,
             bench,
             asked: None,
-        });
-        Ok(())
+        }))
     }
 }
 
@@ -236,6 +243,18 @@ struct Found {
 }
 
 impl Found {
+    /// Gives the axis what else was stored; true if it has a screw table.
+    #[inline(never)]
+    fn give(&self, axis: &mut Axis<'static>, is_valid: bool) -> bool {
+        let map = self.map;
+        axis.set_map(map.and_then(|image| EncoderMap::from_bytes(image).ok()));
+        let has_screw = self.screw.is_some() && axis.set_screw_table(self.screw).is_ok();
+        let is_whole = self.report.is_clean() || self.report.source == Source::Defaults;
+        axis.supervisor_mut()
+            .set_store_corrupt(!(is_whole && is_valid));
+        has_screw
+    }
+
     /// On a frame of its own, as are all that follow: the board's stack is small.
     #[inline(never)]
     fn load<F: NorFlash>(

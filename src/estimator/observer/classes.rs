@@ -32,7 +32,7 @@ const HIGHEST_GAIN: f64 = 1.9;
 const MOST_DOUBLINGS: u32 = 32;
 
 /// What holds at a density of edges.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Class {
     /// Corrections of x, v, a and δ an innovation, with the fractional bits of [`GainScale`].
     pub gains: [i32; 4],
@@ -46,9 +46,23 @@ pub struct Class {
     pub variances: Variances,
 }
 
+impl Class {
+    /// One that corrects nothing.
+    pub const ZERO: Self = Self {
+        gains: [0; 4],
+        per_sigma: 0,
+        half_age_spread: 0,
+        lag: Lag::ZERO,
+        variances: Variances {
+            velocity: Variance::ZERO,
+            acceleration: Variance::ZERO,
+        },
+    };
+}
+
 /// Powers of two, up to 2³⁰, by which the high words of products of gain and innovation become state. A product costs
 /// less than a shift of 64 bits by a number that is not known beforehand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GainScale(pub [i32; 4]);
 
 /// The drive's velocity response over a tick.
@@ -71,13 +85,6 @@ pub struct Response {
 /// Density of edges of a class: 2^(10 − index) in a tick.
 fn density(index: usize) -> f64 {
     libm::ldexp(1.0, (DENSE as i32).wrapping_sub(index as i32))
-}
-
-/// Ticks in which the kinematic filter settles at one edge a tick.
-pub fn warm_up(per_tick: &PerTick, design: &[Steady; CLASSES]) -> u32 {
-    design.get(ONE_A_TICK).map_or(0, |steady| {
-        per_tick.kinematic().settling_ticks(&steady.gains)
-    })
 }
 
 /// Steady filters of all classes, the densest first solved.
@@ -103,7 +110,7 @@ pub fn design(per_tick: &PerTick, dynamics: &Dynamics) -> [Steady; CLASSES] {
 
 #[inline(never)]
 pub fn classes(design: &[Steady; CLASSES], scale: &GainScale, lagging: bool) -> [Class; CLASSES] {
-    let mut classes = [Class::default(); CLASSES];
+    let mut classes = [Class::ZERO; CLASSES];
     for (index, (class, steady)) in classes.iter_mut().zip(design).enumerate() {
         // A class stands for an octave: its middle.
         let edges = density(index) * core::f64::consts::SQRT_2;

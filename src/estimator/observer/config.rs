@@ -1,10 +1,7 @@
 //! From physical parameters to the integers of the tick.
 
-use super::Model;
-use super::classes::{
-    CLASSES, Class, GainScale, JERK_FRAC, ONE_A_TICK, Response, classes, design, quantised,
-    variance, warm_up,
-};
+use super::classes::{JERK_FRAC, Response, quantised, variance};
+use super::gains;
 use super::motion::FINE_FRAC;
 use super::params::ObserverParams;
 use super::per_tick::PerTick;
@@ -38,13 +35,13 @@ pub struct Supervision {
     pub return_ticks: u32,
 }
 
-/// Gains, models and thresholds.
-// In the order of their size, as the target reaches the first kilobyte by pairs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Models and thresholds. Its [`Gains`](super::Gains) follow from it and take long to solve for, so that a
+/// configuration itself is small and soon made.
+// What every tick needs comes first.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Config {
     pub(super) response: Response,
-    pub(super) gain_scale: GainScale,
     pub(super) supervision: Supervision,
     /// Variances at rest.
     pub(super) rest_variances: Variances,
@@ -52,15 +49,12 @@ pub struct Config {
     pub(super) wave_slope: u32,
     /// Acceleration error by the square of a velocity that it makes, 1/d, Q.48.
     pub(super) wave_curvature: u32,
-    warm_up_ticks: u32,
-    drive_classes: [Class; CLASSES],
-    kinematic_classes: [Class; CLASSES],
+    /// What gains are solved from.
+    pub(super) per_tick: PerTick,
 }
 
 impl Config {
     /// An observer of the axis of `params` and `scale`.
-    ///
-    /// Solves 36 Riccati equations by iteration, each from the solution of its neighbour.
     ///
     /// # Errors
     /// [`RangeError`] for a parameter out of range, a natural period outside 8 to 20 000 ticks, or a
@@ -70,16 +64,10 @@ impl Config {
         params.check()?;
         let per_tick = PerTick::new(params, scale)?;
         let rate = scale.tick_hz();
-        let drive = design(&per_tick, &per_tick.drive());
-        let kinematic = design(&per_tick, &per_tick.kinematic());
-        let gain_scale = GainScale::holding(&drive, &kinematic);
         let wave_number = core::f64::consts::TAU / scale.counts_from_mm(params.map_wave_mm);
         let slope = params.map_residual_d * wave_number;
         let rest_ticks = (params.rest_s * rate).max(2.0);
         Ok(Self {
-            drive_classes: classes(&drive, &gain_scale, false),
-            kinematic_classes: classes(&kinematic, &gain_scale, true),
-            gain_scale,
             response: Response::new(params, &per_tick, rate)?,
             supervision: Supervision::new(params, &per_tick, scale),
             rest_variances: Variances {
@@ -88,7 +76,7 @@ impl Config {
             },
             wave_slope: libm::ldexp(slope.min(MOST_SLOPE), 36) as u32,
             wave_curvature: libm::ldexp((slope * wave_number).min(MOST_CURVATURE), 48) as u32,
-            warm_up_ticks: warm_up(&per_tick, &kinematic),
+            per_tick,
         })
     }
 
@@ -113,25 +101,9 @@ impl Config {
         Delay::from(&self.lags())
     }
 
-    pub(in crate::estimator) const fn warm_up_ticks(&self) -> u32 {
-        self.warm_up_ticks
-    }
-
-    /// Corrections of x, v, a and δ (d and ticks) for an innovation of 1 d at 2^`octave` edges a tick, as
-    /// quantised.
-    #[must_use]
-    pub fn gains(&self, model: Model, octave: i32) -> [f64; 4] {
-        let index = (ONE_A_TICK as i32).saturating_sub(octave).max(0);
-        let class = self.class(model == Model::Drive, index.unsigned_abs() as usize);
-        let mut gains = [0.0; 4];
-        for ((gain, bits), frac) in gains
-            .iter_mut()
-            .zip(class.gains)
-            .zip(self.gain_scale.fracs())
-        {
-            *gain = libm::ldexp(f64::from(bits), frac.cast_signed().wrapping_neg());
-        }
-        gains
+    /// Solves for the gains, to know how long they take to forget.
+    pub(in crate::estimator) fn warm_up_ticks(&self) -> u32 {
+        gains::warm_up_ticks(self)
     }
 
     /// Coefficients k₁, /tick², and k₂, /tick, of the drive's jerk, as quantised.
@@ -150,18 +122,6 @@ impl Config {
             libm::ldexp(f64::from(stiffness), frac.wrapping_neg()),
             libm::ldexp(f64::from(damping), 4_i32.wrapping_sub(frac)),
         ]
-    }
-
-    /// Gains by density of edges, 2^(10 − `index`) in a tick.
-    #[inline]
-    pub(super) fn class(&self, drive: bool, index: usize) -> &Class {
-        let classes = if drive {
-            &self.drive_classes
-        } else {
-            &self.kinematic_classes
-        };
-        let [.., rarest] = classes;
-        classes.get(index).unwrap_or(rarest)
     }
 }
 

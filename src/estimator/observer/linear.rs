@@ -7,6 +7,7 @@
 use super::Model;
 use super::config::Config;
 use super::design::{Dynamics, MEAN_AGE, Matrix};
+use super::gains::Gains;
 use crate::tuning::complex::Complex;
 use crate::units::Velocity;
 
@@ -24,7 +25,7 @@ pub struct Linear {
 const MEASURED: [f64; 4] = [1.0, -MEAN_AGE, MEAN_AGE * MEAN_AGE / 2.0, 0.0];
 
 impl Config {
-    /// The equations with the gains for 2^`octave` edges a tick, by `model`.
+    /// The equations with the gains for 2^`octave` edges a tick, by `model`. Solves for them.
     #[must_use]
     pub fn linear(&self, model: Model, octave: i32) -> Linear {
         let [stiffness, damping] = match model {
@@ -36,7 +37,7 @@ impl Config {
             Velocity::FRAC_NBITS.cast_signed().wrapping_neg(),
         );
         Linear {
-            gains: self.gains(model, octave),
+            gains: Gains::solve(self).of(model, octave),
             stiffness,
             damping,
             full_velocity: full,

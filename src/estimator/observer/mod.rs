@@ -33,6 +33,7 @@
 mod classes;
 mod config;
 mod design;
+mod gains;
 mod linear;
 mod motion;
 mod params;
@@ -42,9 +43,11 @@ mod sight;
 mod supervisor;
 
 pub use config::Config;
+pub use gains::Gains;
 pub use linear::Linear;
 pub use params::ObserverParams;
 
+use self::gains::Solved;
 use self::motion::Motion;
 pub(crate) use self::supervisor::Line;
 use self::supervisor::Supervisor;
@@ -74,7 +77,7 @@ const PUNCTUAL: u32 = 16;
 #[repr(C)]
 pub struct Estimator {
     state: State,
-    config: Config,
+    solved: Solved,
 }
 
 /// State of the observer.
@@ -98,29 +101,27 @@ struct State {
 }
 
 impl Estimator {
-    /// An observer at rest.
+    /// An observer at rest; solves for its gains, outside the tick.
     #[must_use]
-    pub const fn new(config: Config) -> Self {
+    pub fn new(config: Config) -> Self {
+        Self::with_gains(config, &Gains::solve(&config))
+    }
+
+    /// An observer at rest with the gains that were [solved](Gains::solve) for `config`.
+    #[must_use]
+    pub const fn with_gains(config: Config, gains: &Gains) -> Self {
         Self {
-            state: State {
-                motion: Motion::steady(0),
-                supervisor: Supervisor::new(),
-                placed: 0,
-                // Long since: an axis that was never seen to move stands.
-                silence: u32::MAX,
-                unseen: 0,
-                class: 0,
-                anchored: false,
-                restarts: 0,
-                line: Line::new(),
+            state: State::at_rest(),
+            solved: Solved {
+                config,
+                gains: *gains,
             },
-            config,
         }
     }
 
     /// Starts anew as after a long motion at `velocity`. Outside the tick.
     pub fn prime(&mut self, velocity: Velocity) {
-        *self = Self::new(self.config);
+        self.state = State::at_rest();
         if velocity != Velocity::ZERO {
             self.state.motion = Motion::steady(velocity.to_bits());
             self.state.silence = 0;
@@ -149,7 +150,8 @@ impl Estimator {
     /// Takes what a tick has to tell.
     #[inline(never)]
     pub fn update_into(&mut self, evidence: &Evidence<'_>, estimate: &mut Estimate) {
-        let Self { state, config } = self;
+        let Self { state, solved } = self;
+        let config = &solved.config;
         let observation = evidence.observation;
         let jerk = state.jerk(config, evidence.command);
         let resting = state.silence >= config.supervision.rest_ticks;
@@ -160,10 +162,10 @@ impl Estimator {
             }
         }
         let Some(sample) = &evidence.sample else {
-            state.without_edge(config, observation, estimate);
+            state.without_edge(solved, observation, estimate);
             return;
         };
-        let class = state.see(config, observation, sample);
+        let class = state.see(solved, observation, sample);
         if state.motion.is_wild() {
             state.restart(observation.delta);
         }
@@ -180,11 +182,27 @@ impl Estimator {
     /// How uncertain the newest estimate is. Outside the tick.
     #[must_use]
     pub fn variances(&self, _: &EdgeNoise) -> Variances {
-        self.state.variances(&self.config)
+        self.state.variances(&self.solved)
     }
 }
 
 impl State {
+    /// Where nothing has been seen yet.
+    const fn at_rest() -> Self {
+        Self {
+            motion: Motion::steady(0),
+            supervisor: Supervisor::new(),
+            placed: 0,
+            // Long since: an axis that was never seen to move stands.
+            silence: u32::MAX,
+            unseen: 0,
+            class: 0,
+            anchored: false,
+            restarts: 0,
+            line: Line::new(),
+        }
+    }
+
     /// Jerk by the model that runs.
     #[inline]
     fn jerk(&mut self, config: &Config, command: Option<Command>) -> i64 {

@@ -5,6 +5,7 @@ use super::params::ObserverParams;
 use crate::units::{AxisScale, RangeError, checked};
 
 /// Figures of a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTick {
     pub full_velocity: f64,
     /// Coefficients of the jerk: −k₁ for a velocity, −k₂ for an acceleration.

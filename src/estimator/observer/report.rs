@@ -1,6 +1,7 @@
 //! The state as an estimate, with its lags, and its uncertainty.
 
 use super::config::Config;
+use super::gains::Solved;
 use super::{Model, State};
 use crate::capture::Observation;
 use crate::estimator::{Estimate, Lags, Variances};
@@ -29,13 +30,15 @@ impl State {
     }
 
     /// How uncertain the newest estimate is.
-    pub(super) fn variances(&self, config: &Config) -> Variances {
-        if self.is_resting(config) {
-            return config.rest_variances;
+    pub(super) fn variances(&self, solved: &Solved) -> Variances {
+        if self.is_resting(&solved.config) {
+            return solved.config.rest_variances;
         }
         let drive = self.supervisor.model() == Model::Drive;
-        let class = config.class(drive, self.class);
-        config.with_long_wave(&class.variances, self.motion.velocity_q20())
+        let class = solved.gains.class(drive, self.class);
+        solved
+            .config
+            .with_long_wave(&class.variances, self.motion.velocity_q20())
     }
 
     /// The silence is long enough to be rest.

@@ -1,7 +1,7 @@
 //! What a tick's edges, or their absence, do to the state.
 
 use super::classes::{Class, MAX_UNSEEN, ONE_A_TICK};
-use super::config::Config;
+use super::gains::Solved;
 use super::motion::{INNOVATION_FRAC, PLACE_FRAC, high};
 use super::{Model, State};
 use crate::capture::Observation;
@@ -24,7 +24,7 @@ impl State {
     #[inline]
     pub(super) fn see<'c>(
         &mut self,
-        config: &'c Config,
+        solved: &'c Solved,
         observation: &Observation<'_>,
         sample: &EdgeSample,
     ) -> &'c Class {
@@ -34,7 +34,7 @@ impl State {
         self.unseen = 0;
         self.placed = sample.correction;
         let drive = self.supervisor.model() == Model::Drive;
-        let class = config.class(drive, self.class);
+        let class = solved.gains.class(drive, self.class);
         let place = relative(observation, sample);
         // Beyond the last class velocity is not followed, only bounded by silence.
         if !self.anchored || unseen >= MAX_UNSEEN {
@@ -46,16 +46,16 @@ impl State {
             .missed_by(place, sample.age.to_bits(), class.half_age_spread);
         let Some(innovation) = credible(innovation) else {
             self.restart(observation.delta);
-            return config.class(false, self.class);
+            return solved.gains.class(false, self.class);
         };
         self.motion
-            .correct(innovation, &class.gains, &config.gain_scale);
+            .correct(innovation, &class.gains, &solved.gains.scale);
         if drive
             && self
                 .supervisor
-                .weigh(innovation, class.per_sigma, &config.supervision)
+                .weigh(innovation, class.per_sigma, &solved.config.supervision)
         {
-            return config.class(false, self.class);
+            return solved.gains.class(false, self.class);
         }
         class
     }
@@ -81,17 +81,17 @@ impl State {
     #[inline(never)]
     pub(super) fn without_edge(
         &mut self,
-        config: &Config,
+        solved: &Solved,
         observation: &Observation<'_>,
         estimate: &mut Estimate,
     ) {
-        self.hold(config, observation);
+        self.hold(solved, observation);
         if self.motion.is_wild() {
             self.restart(observation.delta);
         }
         let drive = self.supervisor.model() == Model::Drive;
-        let class = config.class(drive, self.class);
-        let is_still = self.is_resting(config) && self.motion.velocity == 0;
+        let class = solved.gains.class(drive, self.class);
+        let is_still = self.is_resting(&solved.config) && self.motion.velocity == 0;
         let lag = if is_still { Lag::ZERO } else { class.lag };
         self.estimate(observation, lag, estimate);
     }
@@ -99,7 +99,7 @@ impl State {
     /// Without a sample the shaft is within the discrete all the same; a position that left it is brought
     /// back to its nearer end.
     #[inline]
-    fn hold(&mut self, config: &Config, observation: &Observation<'_>) {
+    fn hold(&mut self, solved: &Solved, observation: &Observation<'_>) {
         self.silence = if observation.delta == 0 {
             self.silence.saturating_add(1)
         } else {
@@ -120,8 +120,8 @@ impl State {
             return;
         };
         let drive = self.supervisor.model() == Model::Drive;
-        let gains = &config.class(drive, HOLD_CLASS).gains;
-        self.motion.correct(outside, gains, &config.gain_scale);
+        let gains = &solved.gains.class(drive, HOLD_CLASS).gains;
+        self.motion.correct(outside, gains, &solved.gains.scale);
         // What is taken for having stopped the shaft must not drive it back.
         let inward = (self.motion.acceleration ^ i64::from(outside)) >= 0;
         if !drive && inward {

@@ -33,7 +33,6 @@ pub const SPREAD: f64 = 0.2;
 
 /// The estimator that is to be in the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "one at a time, outside the tick")]
 pub enum EstimatorChoice {
     /// An observer; what the drive is like comes from the model.
     Observer(ObserverParams),

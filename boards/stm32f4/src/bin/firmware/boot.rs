@@ -50,8 +50,8 @@ pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
     static SCREW: ConstStaticCell<[Stretch; POINTS.1]> =
         ConstStaticCell::new([Stretch::EMPTY; POINTS.1]);
 
-    static CONTROL: ConstStaticCell<Option<AxisControl<Machine>>> = ConstStaticCell::new(None);
-    static LINK: ConstStaticCell<Option<Link<Flash>>> = ConstStaticCell::new(None);
+    static CONTROL: StaticCell<AxisControl<Machine>> = StaticCell::new();
+    static LINK: StaticCell<Link<Flash>> = StaticCell::new();
 
     let boot = Boot {
         flash: Flash::take().ok_or("the flash is taken")?,
@@ -65,14 +65,12 @@ pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
         interlock: &INTERLOCK,
         counters: &COUNTERS,
     };
-    let (control, link) = (CONTROL.take(), LINK.take());
-    let started = boot.start_in(control, link);
-    let loaded = started.map_err(|_| "the factory's parameters make no axis")?;
+    let (control, link) = (CONTROL.uninit(), LINK.uninit());
+    let started = boot.start_in(|made| control.write(made), |made| link.write(made));
+    let (control, link, loaded) = started.map_err(|_| "the factory's parameters make no axis")?;
     if loaded.is_storeless {
         defmt::error!("the flash holds no store that can be used: nothing can be saved");
     }
-    let control = control.as_mut().ok_or("the axis was not made")?;
-    let link = link.as_mut().ok_or("the link was not made")?;
     let tick_hz = link.view().scale.tick_hz();
     let machine = machine(&link.settings(), tick_hz);
     let reports = tick::wire(control, machine, output(), tick_hz);
