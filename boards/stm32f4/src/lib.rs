@@ -16,7 +16,6 @@ pub mod converter;
 pub mod encoder;
 pub mod flash;
 pub mod gpio;
-pub mod isr_cell;
 pub mod latches;
 pub mod lines;
 pub mod machine;

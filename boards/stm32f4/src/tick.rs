@@ -7,6 +7,7 @@
 //!
 //! The handler has the highest priority but for the latches. Nothing in it waits but the converter, for a bounded time.
 
+use board_common::isr_cell::IsrCell;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 use embassy_stm32::pac;
@@ -22,7 +23,6 @@ use static_cell::StaticCell;
 
 use crate::clocks::TIMER_HZ;
 use crate::converter::Output;
-use crate::isr_cell::IsrCell;
 use crate::machine::Machine;
 use crate::{encoder, flash, lines, watchdog};
 

@@ -15,6 +15,7 @@ mod serve;
 
 use board_stm32f4::{clocks, gpio, priorities, safe_state, tick, watchdog};
 use embassy_executor::Spawner;
+use leadscrew_app::modbus::Panel as _;
 use static_cell::StaticCell;
 
 use serve::Server;
@@ -39,10 +40,11 @@ fn start() -> Result<&'static mut Server, &'static str> {
     let mut core = cortex_m::Peripherals::take().ok_or("main runs once")?;
     let (server, period) = boot::boot()?;
     let server = SERVER.init(server);
-    watchdog::start(server.tick_hz() as u32);
+    let tick_hz = server.link.view().scale.tick_hz();
+    watchdog::start(tick_hz as u32);
     priorities::unmask(&mut core.NVIC);
     tick::start(period);
     watchdog::shorten();
-    defmt::info!("running at {=f64} Hz", server.tick_hz());
+    defmt::info!("running at {=f64} Hz", tick_hz);
     Ok(server)
 }
