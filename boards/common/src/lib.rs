@@ -3,6 +3,7 @@
 //! ```text
 //! isr_cell        state of an interrupt handler
 //! line            bytes between an interrupt and thread mode
+//! paint           how far a stack was used
 //! serve           thread mode: reports, the link's bytes, Modbus, a restart
 //! ```
 //!
@@ -11,4 +12,5 @@
 
 pub mod isr_cell;
 pub mod line;
+pub mod paint;
 pub mod serve;
