@@ -68,7 +68,7 @@ pub struct Counters {
 pub struct Counts {
     /// Ticks that ran.
     pub ticks: u32,
-    /// Ticks whose inputs were not there.
+    /// Ticks whose inputs were not there, and those that did not run at all.
     pub late: u32,
     /// Ticks that ended after their budget.
     pub overlong: u32,
@@ -114,9 +114,13 @@ impl Counts {
 }
 
 /// Only the tick writes, so a load and a store are enough.
-fn add_one(counter: &AtomicU32) {
+fn add(counter: &AtomicU32, number: u32) {
     let value = counter.load(Ordering::Relaxed);
-    counter.store(value.wrapping_add(1), Ordering::Release);
+    counter.store(value.wrapping_add(number), Ordering::Release);
+}
+
+fn add_one(counter: &AtomicU32) {
+    add(counter, 1);
 }
 
 fn keep_worst(counter: &AtomicU32, value: u32) {
@@ -131,6 +135,7 @@ pub struct Runtime<C: Control + 'static> {
     records: Producer<'static, C::Record>,
     counters: &'static Counters,
     budget: u32,
+    has_missed: bool,
     was_in_time: bool,
 }
 
@@ -147,18 +152,42 @@ impl<C: Control> Runtime<C> {
             records,
             counters,
             budget,
+            has_missed: false,
             was_in_time: false,
         }
     }
 
-    /// Whether the last tick had its inputs and ended within its budget: what a watchdog may be fed by.
+    /// Whether the last tick had its inputs, ended within its budget and came right after the one before: what a watchdog may be
+    /// fed by.
     #[inline]
     pub const fn was_in_time(&self) -> bool {
         self.was_in_time
     }
 
+    /// Counts ticks that did not run before the one that comes, for a board whose inputs are there whenever it looks: what is late
+    /// there is the tick itself. The axis is told of them by its inputs.
+    #[inline]
+    pub fn note_missed(&mut self, missed: u16) {
+        if missed > 0 {
+            add(&self.counters.late, missed.into());
+            self.has_missed = true;
+        }
+    }
+
     /// One tick. `inputs` is `None` where they did not come in time: counted as late.
     pub fn run(&mut self, timer: &impl TickTimer, inputs: Option<&C::Inputs>) -> C::Record {
+        self.run_and(timer, inputs, |_| {})
+    }
+
+    /// The same with `put_out`, which does what the record says and is part of the tick: a tick whose output comes too late is
+    /// overlong.
+    #[inline]
+    pub fn run_and(
+        &mut self,
+        timer: &impl TickTimer,
+        inputs: Option<&C::Inputs>,
+        put_out: impl FnOnce(&C::Record),
+    ) -> C::Record {
         keep_worst(&self.counters.worst_start, timer.since_due());
         let record = if let Some(inputs) = inputs {
             self.control.step(inputs)
@@ -166,10 +195,12 @@ impl<C: Control> Runtime<C> {
             add_one(&self.counters.late);
             self.control.missed()
         };
+        put_out(&record);
         if enqueue(&mut self.records, record).is_err() {
             add_one(&self.counters.lost_records);
         }
-        self.was_in_time = self.check_end(timer) && inputs.is_some();
+        let has_missed = core::mem::take(&mut self.has_missed);
+        self.was_in_time = self.check_end(timer) && inputs.is_some() && !has_missed;
         // Last: a reader that sees tick n counted sees all that was counted in it.
         add_one(&self.counters.ticks);
         record
@@ -322,6 +353,46 @@ mod tests {
         runtime.run(&wrapped, Some(&1));
         assert_eq!(counters.read().overlong, 2);
         assert!(!counters.read().is_clean());
+    }
+
+    #[test]
+    fn a_tick_whose_output_takes_too_long_is_overlong() {
+        struct Clock(Cell<u32>);
+
+        impl TickTimer for Clock {
+            fn since_due(&self) -> u32 {
+                self.0.get()
+            }
+
+            fn is_due_again(&self) -> bool {
+                false
+            }
+        }
+
+        let (mut runtime, mut records, counters) = runtime();
+        let clock = Clock(Cell::new(5));
+        let put = runtime.run_and(&clock, Some(&21), |record| clock.0.set(9 + record));
+        assert_eq!((put, records.dequeue()), (42, Some(42)));
+        let counts = counters.read();
+        assert_eq!((counts.overlong, counts.worst_end), (1, 51));
+        assert!(!runtime.was_in_time());
+        clock.0.set(5);
+        runtime.run_and(&clock, Some(&20), |record| clock.0.set(9 + record));
+        assert!(runtime.was_in_time(), "one clock earlier");
+    }
+
+    #[test]
+    fn ticks_that_did_not_run_count_as_late_and_the_one_after_them_does_not_feed() {
+        let (mut runtime, _records, counters) = runtime();
+        let mut run = |missed| {
+            runtime.note_missed(missed);
+            runtime.run(&Timer::ending_at(5), Some(&1));
+            (counters.read().late, runtime.was_in_time())
+        };
+        assert_eq!(run(0), (0, true));
+        assert_eq!(run(3), (3, false));
+        assert_eq!(run(0), (3, true));
+        assert_eq!(run(u16::MAX), (3 + 0xffff, false));
     }
 
     #[test]

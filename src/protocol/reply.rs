@@ -298,7 +298,8 @@ messages! {
         }
         /// Why the firmware was last started anew without being asked to, since the power came.
         Reset = 17 {
-            /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another.
+            /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another, 5 the
+            /// stack reached its end.
             reason: u8,
             /// Such starts since the power came.
             resets: u32,

@@ -186,9 +186,9 @@ faults! {
     OutputMismatch = 12, Off {
         condition: "What the converter reads back differs from the last command by more than `readback_tolerance` in two ticks running. Not watched without a read-back.",
         bound: "the second tick of the difference",
-        figure: "read-back less command, of full command",
+        figure: "read-back less command, of full command; the whole range or half of it: the converter did not start, does not answer, or lost its settings",
         cause: "The converter, its supply or its reference is defective; the output is shorted.",
-        remedy: "Measure the output with the drive disconnected; replace the board.",
+        remedy: "Check its supply and the wires to the drive. With the axis off it is set up anew, five times, a second apart; then clear the fault, or restart the axis. If it comes back, measure the output with the drive disconnected; replace the board.",
     }
     /// A limit switch was reached.
     HardLimit = 13, ZeroVolts {

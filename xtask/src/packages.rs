@@ -7,6 +7,7 @@ pub const HOST: &[&str] = &[
     "leadscrew",
     "leadscrew-hal-mock",
     "leadscrew-app",
+    "board-common",
     "leadscrew-client",
     "leadscrew-host",
     QEMU,

@@ -10,32 +10,36 @@
 //! does not answer, lost its settings, is shorted or had no supply does not put out what its register says; it is given to
 //! the supervisor as the full command against the one that was told, which is a mismatch whatever the tolerance.
 //!
-//! Where a word means its voltage, at start, nothing moves: the drive is off, and the wires are tried by the input register,
-//! which is not put out.
+//! Before that the wires are tried by the input register, with /LDAC high: low, it would put every pattern out. It stays high, as
+//! the tick's word puts out what it brings whatever /LDAC is. [`Upkeep`] sets a converter that failed up anew.
 //!
 //! To be verified with a board: the time after a reset and for the internal reference to settle, which the board waits; that
 //! the output stays at 0 V from power-up to the first code; SDO valid at the board's SPI clock.
 
 mod code;
+mod trial;
+mod upkeep;
 mod words;
 
 pub use code::{ZERO, of_command, to_command};
+pub use upkeep::{TRIES, Upkeep};
 pub use words::{Register, put_out};
 
 use core::fmt;
 
 use leadscrew::units::Command;
+use trial::Trial;
 
 /// Puts 0 V out, whatever was before: for the handlers of panics and hard faults.
 pub const PUT_OUT_ZERO: u32 = put_out(ZERO);
-/// What the wires are tried with: every bit once high and once low, and neighbours unlike.
-const PATTERNS: [u16; 4] = [0x5555, 0xaaaa, 0x00ff, ZERO];
 
 /// The SPI that the converter is on.
 pub trait Bus {
     /// Sends a word of 24 bits, the high one first, with /SYNC low meanwhile, and gives what came back; `None` if that did not
     /// end in its bounded time.
     fn exchange(&mut self, word: u32) -> Option<u32>;
+    /// Drives /RESET: held, the output is clamped to ground.
+    fn hold_reset(&mut self, is_held: bool);
 }
 
 /// What is wrong with the converter.
@@ -124,28 +128,11 @@ impl Converter {
     /// # Errors
     /// What is wrong with it; no axis is to be enabled then.
     pub fn start(bus: &mut impl Bus, is_reference_internal: bool) -> Result<Self, Trouble> {
-        let mut send = |word| bus.exchange(word).ok_or(Trouble::Silent);
-        let settings = words::settings(is_reference_internal);
-        send(words::write_control(settings))?;
-        for sent in PATTERNS {
-            send(words::write_input(sent))?;
-            send(words::ask(Register::Input))?;
-            let seen = send(words::ask(Register::Control))?;
-            let seen = words::answer(Register::Input, seen).ok_or(Trouble::Silent)?;
-            if seen != sent {
-                return Err(Trouble::Garbled { sent, seen });
+        let mut trial = Trial::new(is_reference_internal);
+        loop {
+            if let Some(converter) = trial.step(bus)? {
+                return Ok(converter);
             }
-        }
-        let mut converter = Self {
-            settings,
-            has_asked: true,
-        };
-        let put = converter.put(bus, Command::ZERO, false);
-        // Of the control register as it is after 0 V was put out.
-        let again = converter.put(bus, Command::ZERO, false);
-        match put.trouble.or(again.trouble) {
-            None => Ok(converter),
-            Some(trouble) => Err(trouble),
         }
     }
 

@@ -60,7 +60,7 @@ impl<F: NorFlash> Bench<F> {
                 [cfsr, hfsr, address] = [fault.cfsr, fault.hfsr, fault.address];
             }
             Some(Reason::LateTicks { tick }) => place = *tick,
-            Some(Reason::Watchdog) | None => {}
+            Some(Reason::Watchdog | Reason::StackOverflow) | None => {}
         }
         Reply::Reset {
             reason: self.reset.reason.as_ref().map_or(0, Reason::number),

@@ -74,6 +74,8 @@ pub enum Reason {
         /// The tick from which on they did, counted from start-up.
         tick: u32,
     },
+    /// The stack reached its end.
+    StackOverflow,
 }
 
 impl Reason {
@@ -85,6 +87,7 @@ impl Reason {
             Self::HardFault(_) => 2,
             Self::Watchdog => 3,
             Self::LateTicks { .. } => 4,
+            Self::StackOverflow => 5,
         }
     }
 }
@@ -118,6 +121,7 @@ impl fmt::Display for Reason {
             Self::LateTicks { tick } => {
                 write!(f, "watchdog: ticks ended too late from tick {tick} on")
             }
+            Self::StackOverflow => f.write_str("the stack reached its end"),
         }
     }
 }

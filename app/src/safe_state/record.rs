@@ -148,7 +148,7 @@ fn body_of(reason: &Reason) -> [u32; BODY] {
             } = *fault;
             put(&mut [pc, lr, cfsr, hfsr, address].into_iter());
         }
-        Reason::Watchdog => {}
+        Reason::Watchdog | Reason::StackOverflow => {}
         Reason::LateTicks { tick } => put(&mut [*tick].into_iter()),
     }
     body
@@ -174,6 +174,7 @@ fn reason_of(kind: u32, body: &[u32; BODY]) -> Option<Reason> {
         }),
         (3, _) => Reason::Watchdog,
         (4, [tick, ..]) => Reason::LateTicks { tick },
+        (5, _) => Reason::StackOverflow,
         _ => return None,
     })
 }

@@ -17,6 +17,9 @@ pub struct Chip {
     pub stuck: Option<u32>,
     pub is_shorted: bool,
     pub is_control_locked: bool,
+    /// /LDAC is low: what comes into the input register is put out.
+    pub is_let_through: bool,
+    pub is_held_in_reset: bool,
     /// Bits of a code that do not arrive.
     pub lost_bits: u16,
     is_brown: bool,
@@ -35,6 +38,12 @@ impl Chip {
         }
     }
 
+    /// To the state after power-up; what is wrong with it stays.
+    fn reset(&mut self) {
+        (self.input, self.output, self.control) = (0, 0, 0);
+        (self.is_brown, self.is_up, self.answer) = (false, false, 0);
+    }
+
     pub fn brown_out(&mut self) {
         self.is_brown = true;
         self.is_up = false;
@@ -50,7 +59,13 @@ impl Chip {
         let back = self.answer | 0xa0_0000;
         self.answer = 0x1f_5a5a;
         match command {
-            0x1 => self.input = data,
+            0x1 => {
+                self.input = data;
+                if self.is_let_through {
+                    self.output = data;
+                    self.seen_out.push(data);
+                }
+            }
             0x3 => {
                 self.input = data;
                 self.output = data;
@@ -67,7 +82,7 @@ impl Chip {
                 let flags = u32::from(self.is_shorted) << 12 | u32::from(self.is_brown) << 11;
                 self.answer = 0x0c_0000 | flags | u32::from(self.control);
             }
-            0xf => *self = Self::default(),
+            0xf => self.reset(),
             _ => {}
         }
         back
@@ -79,7 +94,15 @@ impl Bus for Chip {
         if self.is_dead {
             return None;
         }
+        if self.is_held_in_reset {
+            return Some(0x1f_ffff);
+        }
         let back = self.exchange_word(word);
         Some(self.stuck.unwrap_or(back))
+    }
+
+    fn hold_reset(&mut self, is_held: bool) {
+        self.is_held_in_reset = is_held;
+        self.reset();
     }
 }

@@ -1,6 +1,7 @@
 //! The converter's words against a model of it made from the data sheet.
 
 mod chip;
+mod upkeep;
 
 use chip::Chip;
 use leadscrew::units::Command;
@@ -25,6 +26,11 @@ fn it_starts_in_its_range_at_zero_and_puts_out_nothing_else() {
         "±10 V, 0 V at power-up and clear, internal reference"
     );
     assert!(chip.seen_out.iter().all(|code| *code == ZERO));
+    // With /LDAC low the patterns that try the wires would be voltages: the board keeps it high.
+    let mut let_through = Chip::default();
+    let_through.is_let_through = true;
+    assert!(Converter::start(&mut let_through, true).is_ok());
+    assert!(let_through.seen_out.iter().any(|code| *code != ZERO));
     assert!(Converter::start(&mut Chip::default(), false).is_ok());
 }
 

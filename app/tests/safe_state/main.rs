@@ -30,7 +30,13 @@ fn reasons() -> impl Strategy<Value = Reason> {
     let panic =
         (".{0,40}", any::<u32>()).prop_map(|(path, line)| Reason::Panic(Place::new(&path, line)));
     let late = any::<u32>().prop_map(|tick| Reason::LateTicks { tick });
-    prop_oneof![fault, panic, late, Just(Reason::Watchdog)]
+    prop_oneof![
+        fault,
+        panic,
+        late,
+        Just(Reason::Watchdog),
+        Just(Reason::StackOverflow)
+    ]
 }
 
 fn records() -> impl Strategy<Value = Record> {

@@ -1,5 +1,6 @@
 //! What carries the link: a UART, or the line in lockstep.
 
+use board_common::line::Bytes;
 use heapless::String;
 
 use crate::lockstep::{Lockstep, LockstepError, Turn};
@@ -36,30 +37,6 @@ impl Carrier {
         }
     }
 
-    /// Moves what has come to the front of `place`; the number of bytes.
-    pub fn read(&mut self, place: &mut [u8]) -> usize {
-        match self {
-            Self::Uart(line) => line.read(place),
-            Self::Lockstep(lockstep) => lockstep.read(place),
-        }
-    }
-
-    /// Sends all of `bytes` if there is room for them, else nothing.
-    pub fn send(&mut self, bytes: &[u8]) -> bool {
-        match self {
-            Self::Uart(line) => line.send(bytes),
-            Self::Lockstep(lockstep) => lockstep.send(bytes),
-        }
-    }
-
-    /// Whether all that was to be sent is on its way.
-    pub fn is_sent(&self) -> bool {
-        match self {
-            Self::Uart(line) => line.is_sent(),
-            Self::Lockstep(lockstep) => lockstep.is_sent(),
-        }
-    }
-
     /// Gives the host its turn where it is due after `tick` ticks; a UART does not wait for anybody.
     ///
     /// # Errors
@@ -68,6 +45,29 @@ impl Carrier {
         match self {
             Self::Lockstep(lockstep) if lockstep.is_due(tick) => lockstep.exchange(tick),
             _ => Ok(Turn::Run),
+        }
+    }
+}
+
+impl Bytes for Carrier {
+    fn read(&mut self, place: &mut [u8]) -> usize {
+        match self {
+            Self::Uart(line) => line.read(place),
+            Self::Lockstep(lockstep) => lockstep.read(place),
+        }
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> bool {
+        match self {
+            Self::Uart(line) => line.send(bytes),
+            Self::Lockstep(lockstep) => lockstep.send(bytes),
+        }
+    }
+
+    fn is_sent(&self) -> bool {
+        match self {
+            Self::Uart(line) => line.is_sent(),
+            Self::Lockstep(lockstep) => lockstep.is_sent(),
         }
     }
 }

@@ -10,7 +10,6 @@ pub mod flash;
 pub mod handoff;
 pub mod instructions;
 pub mod interrupts;
-pub mod isr_cell;
 pub mod lockstep;
 mod registers;
 pub mod simulated;

@@ -1,20 +1,13 @@
 //! The UARTs of the board, driven by interrupts: bytes go through queues, and thread mode waits for nothing.
-//!
-//! ```text
-//! wire ─► RX interrupt ─► queue ─► Line::read   (thread mode)
-//! wire ◄─ TX interrupt ◄─ queue ◄─ Line::send   (thread mode; pends the TX line)
-//! ```
+//! [`board_common::line`] has the queues.
 //!
 //! The interrupts wake nobody: thread mode looks once a tick.
 
-use core::sync::atomic::{AtomicU32, Ordering};
-
+use board_common::line::{self, Ends, Wire};
 use cortex_m::peripheral::NVIC;
-use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::CLOCK_HZ;
 use crate::interrupts::{Interrupt, interrupt};
-use crate::isr_cell::IsrCell;
 use crate::registers::Registers;
 
 /// Bytes that may have come and not been read, less one: 20 ms of a line of 1 Mbit/s.
@@ -76,9 +69,7 @@ pub struct Uart {
     registers: Cmsdk,
     transmit: Interrupt,
     receive: Interrupt,
-    received: IsrCell<Producer<'static, u8>>,
-    to_send: IsrCell<Consumer<'static, u8>>,
-    lost: AtomicU32,
+    ends: Ends,
 }
 
 /// UART 0, lines `UART0RX` and `UART0TX`.
@@ -87,28 +78,9 @@ pub static UART0: Uart = Uart::new(0x4000_4000, Interrupt::UART0RX, Interrupt::U
 pub static UART1: Uart = Uart::new(0x4000_5000, Interrupt::UART1RX, Interrupt::UART1TX);
 
 /// The queues of a UART.
-#[derive(Default)]
-pub struct Queues {
-    received: Queue<u8, RECEIVED>,
-    to_send: Queue<u8, TO_SEND>,
-}
-
-impl Queues {
-    /// Empty ones.
-    pub const fn new() -> Self {
-        Self {
-            received: Queue::new(),
-            to_send: Queue::new(),
-        }
-    }
-}
-
+pub type Queues = line::Queues<RECEIVED, TO_SEND>;
 /// Thread mode's end of a UART.
-pub struct Line {
-    uart: &'static Uart,
-    received: Consumer<'static, u8>,
-    to_send: Producer<'static, u8>,
-}
+pub type Line = line::Line<Uart>;
 
 impl Uart {
     const fn new(address: usize, receive: Interrupt, transmit: Interrupt) -> Self {
@@ -116,9 +88,7 @@ impl Uart {
             registers: Cmsdk(Registers::new(address)),
             transmit,
             receive,
-            received: IsrCell::empty(),
-            to_send: IsrCell::empty(),
-            lost: AtomicU32::new(0),
+            ends: Ends::new(),
         }
     }
 
@@ -129,85 +99,44 @@ impl Uart {
 
     /// Starts the UART at `baud`, or as near as its divider comes. Its interrupts have to be masked.
     pub fn open(&'static self, baud: u32, queues: &'static mut Queues) -> Line {
-        let (came, received) = queues.received.split();
-        let (to_send, going) = queues.to_send.split();
-        assert!(
-            self.received.put(came) && self.to_send.put(going),
-            "interrupts are masked"
-        );
+        let line = Line::open(self, queues);
         self.registers.start(baud);
-        Line {
-            uart: self,
-            received,
-            to_send,
-        }
+        line
     }
 
     /// A byte has come.
     fn on_receive(&self) {
         // Before the byte is fetched: the next one flags anew.
         self.registers.acknowledge(Cmsdk::RX);
-        let byte = self.registers.get();
-        let is_kept = self
-            .received
-            .with(|queue| queue.enqueue(byte).is_ok())
-            .unwrap_or(false);
-        let lost = u32::from(!is_kept) + u32::from(self.registers.take_overrun());
-        // Only this interrupt writes.
-        let before = self.lost.load(Ordering::Relaxed);
-        self.lost
-            .store(before.wrapping_add(lost), Ordering::Relaxed);
+        self.ends.came(self.registers.get());
+        if self.registers.take_overrun() {
+            self.ends.note_lost();
+        }
     }
 
     /// The last byte is on its way, or thread mode has pended the line.
     fn on_transmit(&self) {
         self.registers.acknowledge(Cmsdk::TX);
-        self.to_send.with(|queue| {
-            while self.registers.has_room()
-                && let Some(byte) = queue.dequeue()
-            {
-                self.registers.put(byte);
-            }
-        });
+        while self.registers.has_room()
+            && let Some(byte) = self.ends.next()
+        {
+            self.registers.put(byte);
+        }
     }
 }
 
-impl Line {
-    /// Moves what has come to the front of `place`; the number of bytes.
-    pub fn read(&mut self, place: &mut [u8]) -> usize {
-        let mut count = 0;
-        for (byte, came) in place
-            .iter_mut()
-            .zip(core::iter::from_fn(|| self.received.dequeue()))
-        {
-            *byte = came;
-            count += 1;
-        }
-        count
+impl Wire for Uart {
+    fn ask_to_send(&self) {
+        NVIC::pend(self.transmit);
     }
 
-    /// Sends all of `bytes` if there is room for them, else nothing.
-    pub fn send(&mut self, bytes: &[u8]) -> bool {
-        let room = self.to_send.capacity() - self.to_send.len();
-        if bytes.len() > room {
-            return false;
-        }
-        for byte in bytes {
-            // There is room: this is the only producer.
-            let _ = self.to_send.enqueue(*byte);
-        }
-        NVIC::pend(self.uart.transmit);
+    /// What it was handed goes out by itself.
+    fn is_idle(&self) -> bool {
         true
     }
 
-    /// Whether all has been handed to the UART.
-    pub fn is_sent(&self) -> bool {
-        self.to_send.is_empty()
-    }
-
-    /// Bytes that came and found no room; wraps.
-    pub fn lost(&self) -> u32 {
-        self.uart.lost.load(Ordering::Relaxed)
+    fn ends(&self) -> &Ends {
+        &self.ends
     }
 }
 

@@ -3,7 +3,7 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Mstr};
 use leadscrew::units::Command;
-use leadscrew_app::converter::{Bus, Converter, PUT_OUT_ZERO, Trouble};
+use leadscrew_app::converter::{Bus, PUT_OUT_ZERO, Trouble, Upkeep};
 
 use crate::clocks::CORE_HZ;
 use crate::{gpio, pins};
@@ -27,6 +27,10 @@ impl Bus for Spi {
         gpio::set(pins::CONVERTER_SYNC, true);
         back
     }
+
+    fn hold_reset(&mut self, is_held: bool) {
+        gpio::set(pins::CONVERTER_RESET, !is_held);
+    }
 }
 
 fn exchange_byte(byte: u8) -> Option<u8> {
@@ -41,11 +45,10 @@ fn exchange_byte(byte: u8) -> Option<u8> {
 }
 
 /// What puts the command out.
-pub struct Output(Option<Converter>);
+pub struct Output(Upkeep);
 
 impl Output {
-    /// Sets the converter up at 0 V. What is wrong with it is told, and then nothing is put out: the supervisor sees a command
-    /// that is not the one it gave.
+    /// Sets the converter up at 0 V. What is wrong with it is told; it is tried again in the ticks.
     pub fn start() -> (Self, Option<Trouble>) {
         let spi = pac::SPI1;
         spi.cr1().write(|w| {
@@ -57,31 +60,22 @@ impl Output {
             w.set_ssi(true);
             w.set_spe(true);
         });
-        gpio::set(pins::CONVERTER_RESET, true);
-        cortex_m::asm::delay(CORE_HZ / SETTLES);
-        let started = Converter::reset(&mut Spi).and_then(|()| {
-            cortex_m::asm::delay(CORE_HZ / SETTLES);
-            Converter::start(&mut Spi, true)
-        });
-        match started {
-            Ok(converter) => (Self(Some(converter)), None),
-            Err(trouble) => {
-                release();
-                (Self(None), Some(trouble))
-            }
-        }
+        let settle = || cortex_m::asm::delay(CORE_HZ / SETTLES);
+        let upkeep = Upkeep::start(&mut Spi, true, settle);
+        let trouble = upkeep.trouble();
+        (Self(upkeep), trouble)
     }
 
-    /// Puts a command out, and gives what the converter says of it.
+    /// Takes the rate of the ticks to come, a second.
+    pub fn pace(&mut self, tick_hz: f64) {
+        self.0.pace(tick_hz);
+    }
+
+    /// Puts a command out, and gives what the converter says of it. `is_off`: drive off and brake closed.
     #[inline]
-    pub fn put(&mut self, command: Command) -> Command {
-        match &mut self.0 {
-            Some(converter) => {
-                let is_alert = !gpio::is_high(pins::CONVERTER_ALERT);
-                converter.put(&mut Spi, command, is_alert).readback
-            }
-            None => Command::ONE,
-        }
+    pub fn put(&mut self, command: Command, is_off: bool) -> Command {
+        let is_alert = !gpio::is_high(pins::CONVERTER_ALERT);
+        self.0.put(&mut Spi, command, is_off, is_alert).readback
     }
 }
 

@@ -64,6 +64,8 @@ pub enum FlashError {
     Range,
     /// The drive is enabled or the brake released.
     Enabled,
+    /// The watchdog did not take the period that outlasts an erasure.
+    Watchdog,
     /// The flash says that it failed: its error flags.
     Failed(u32),
 }
@@ -72,7 +74,7 @@ impl NorFlashError for FlashError {
     fn kind(&self) -> NorFlashErrorKind {
         match self {
             Self::Range => NorFlashErrorKind::OutOfBounds,
-            Self::Enabled | Self::Failed(_) => NorFlashErrorKind::Other,
+            Self::Enabled | Self::Watchdog | Self::Failed(_) => NorFlashErrorKind::Other,
         }
     }
 }
@@ -160,14 +162,15 @@ impl NorFlash for Flash {
         if !lines::are_released() {
             return Err(FlashError::Enabled);
         }
-        watchdog::lengthen();
+        watchdog::lengthen().map_err(|_| FlashError::Watchdog)?;
         let erased = sectors.iter().try_for_each(|sector| {
             watchdog::feed();
             STALLED.store(true, Ordering::Relaxed);
             unlocked(|| erase_sector(sector.number))
         });
         STALLED.store(true, Ordering::Relaxed);
-        watchdog::shorten();
+        // Otherwise no axis is enabled any more, which tells.
+        watchdog::shorten().map_err(|_| FlashError::Watchdog)?;
         erased
     }
 

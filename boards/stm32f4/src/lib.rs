@@ -4,7 +4,8 @@
 //! clocks, pins, gpio                     what the board is
 //! encoder, ring, latches, references ─► machine ─► tick ─► converter, lines
 //! uart, flash, memory                    what the link works with, in thread mode
-//! priorities, watchdog, safe_state       what keeps it safe
+//! priorities, watchdog, stack            what keeps it safe
+//! safe_state, reset_record               and what is known of it afterwards
 //! ```
 //!
 //! The peripherals work together by hardware triggers, so they are set up by their registers; the HAL gives clocks, time and the
@@ -16,7 +17,6 @@ pub mod converter;
 pub mod encoder;
 pub mod flash;
 pub mod gpio;
-pub mod isr_cell;
 pub mod latches;
 pub mod lines;
 pub mod machine;
@@ -24,8 +24,10 @@ pub mod memory;
 pub mod pins;
 pub mod priorities;
 pub mod references;
+pub mod reset_record;
 pub mod ring;
 pub mod safe_state;
+pub mod stack;
 pub mod tick;
 pub mod uart;
 pub mod watchdog;

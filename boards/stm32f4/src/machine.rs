@@ -12,6 +12,7 @@ use crate::latches::{self, Stamp};
 use crate::lines;
 use crate::references::References;
 use crate::ring::EDGES;
+use crate::watchdog;
 
 /// The machine at the tick.
 pub struct Machine {
@@ -98,7 +99,8 @@ impl Inlet for Machine {
         capture.home = self.home;
         Inputs {
             capture,
-            enable,
+            // While a period that outlasts an erasure is in force, nobody would end a tick that hangs.
+            enable: enable && watchdog::PERIOD.may_enable(),
             lines: self.lines,
             reference: Reference {
                 steps: self.references.steps(),

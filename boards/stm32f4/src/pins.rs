@@ -90,8 +90,9 @@ pub const CONVERTER_CLOCK: Pin = alternate(b'A', 5, 5, "SPI1_SCK", Pull::None);
 pub const CONVERTER_OUT: Pin = alternate(b'A', 6, 5, "SPI1_MISO", Pull::Up);
 /// Converter, SDI.
 pub const CONVERTER_IN: Pin = alternate(b'A', 7, 5, "SPI1_MOSI", Pull::None);
-/// Converter, /LDAC: low, so that a write takes effect with the rising edge of /SYNC.
-pub const CONVERTER_LOAD: Pin = pin(b'C', 4, Mode::Output(false), Pull::None);
+/// Converter, /LDAC: high for ever. Low, it would put out every pattern that the wires are tried with; the tick's word puts out
+/// what it brings whatever this is.
+pub const CONVERTER_LOAD: Pin = pin(b'C', 4, Mode::Output(true), Pull::None);
 /// Converter, /RESET: low (output clamped to ground) until the converter is set up, and again in the safe state.
 pub const CONVERTER_RESET: Pin = pin(b'C', 5, Mode::Output(false), Pull::Down);
 /// Converter, /ALERT, open drain: low is a brown-out or too hot.

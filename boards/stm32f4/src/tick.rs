@@ -7,6 +7,7 @@
 //!
 //! The handler has the highest priority but for the latches. Nothing in it waits but the converter, for a bounded time.
 
+use board_common::isr_cell::IsrCell;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 use embassy_stm32::pac;
@@ -14,6 +15,8 @@ use embassy_stm32::pac::timer::vals::{Mms, Urs};
 use heapless::spsc::{Consumer, Queue};
 use leadscrew_app::axis_control::AxisControl;
 use leadscrew_app::report::Report;
+use leadscrew_app::safe_state::feeding::{Feeding, Meal};
+use leadscrew_app::safe_state::reason::Reason;
 use leadscrew_app::store::Interlock;
 use leadscrew_app::telemetry::Ready;
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
@@ -22,9 +25,8 @@ use static_cell::StaticCell;
 
 use crate::clocks::TIMER_HZ;
 use crate::converter::Output;
-use crate::isr_cell::IsrCell;
 use crate::machine::Machine;
-use crate::{encoder, flash, lines, watchdog};
+use crate::{encoder, flash, lines, reset_record, safe_state, stack, watchdog};
 
 /// Ticks that thread mode may be behind.
 const QUEUE: usize = 24;
@@ -43,9 +45,9 @@ struct TickState {
     runtime: Runtime<&'static mut AxisControl<Machine>>,
     machine: Machine,
     output: Output,
+    feeding: Feeding,
     /// Clocks of TIM5 from tick to tick.
     period: u32,
-    budget: u32,
     /// Time of the last tick; none before the first.
     last: Option<u32>,
 }
@@ -67,19 +69,20 @@ impl TickTimer for Due {
 pub fn wire(
     control: &'static mut AxisControl<Machine>,
     machine: Machine,
-    output: Output,
+    mut output: Output,
     tick_hz: f64,
 ) -> Consumer<'static, Report> {
     static REPORTS: StaticCell<Queue<Report, QUEUE>> = StaticCell::new();
     let (producer, reports) = REPORTS.init(Queue::new()).split();
     let period = (f64::from(TIMER_HZ) / tick_hz) as u32;
     let budget = period / 8 * BUDGET;
+    output.pace(tick_hz);
     let state = TickState {
         runtime: Runtime::new(control, producer, &COUNTERS, budget),
         machine,
         output,
+        feeding: Feeding::new(),
         period,
-        budget,
         last: None,
     };
     // Masked, so nobody else has it.
@@ -129,13 +132,37 @@ impl TickState {
         let (sample, progress) = encoder::sample();
         let missed = self.missed(sample.time);
         self.machine.sample(sample, progress, missed);
-        let due = Due(sample.time);
-        let report = self.runtime.run(&due, Some(&self.machine));
-        let outputs = report.record.put_out();
-        lines::put_out(&outputs);
-        self.machine.readback = Some(self.output.put(outputs.command));
-        if missed == 0 && !due.is_due_again() && due.since_due() <= self.budget {
-            watchdog::feed();
+        let Self {
+            runtime,
+            machine,
+            output,
+            ..
+        } = self;
+        runtime.note_missed(missed);
+        let mut readback = None;
+        runtime.run_and(&Due(sample.time), Some(&*machine), |report| {
+            let outputs = report.record.put_out();
+            lines::put_out(&outputs);
+            let is_off = !(outputs.enabled || outputs.brake_released);
+            readback = Some(output.put(outputs.command, is_off));
+        });
+        machine.readback = readback;
+        if !stack::is_whole() {
+            safe_state::fail(Reason::StackOverflow);
+        }
+        self.feed();
+    }
+
+    /// The first starving tick but one writes a record, some 20 µs long: it is late as it is.
+    fn feed(&mut self) {
+        match self.feeding.after_tick(self.runtime.was_in_time()) {
+            Meal::Feed => watchdog::feed(),
+            Meal::FeedAgain => {
+                reset_record::forget();
+                watchdog::feed();
+            }
+            Meal::Starve => {}
+            Meal::StarveFirst(reason) => reset_record::keep(reason),
         }
     }
 

@@ -1,20 +1,13 @@
 //! The UARTs, driven by interrupts: bytes go through queues, and thread mode waits for nothing.
-//!
-//! ```text
-//! wire ─► interrupt ─► queue ─► Line::read   (thread mode)
-//! wire ◄─ interrupt ◄─ queue ◄─ Line::send   (thread mode; asks for the interrupt)
-//! ```
+//! [`board_common::line`] has the queues.
 
-use core::sync::atomic::{AtomicU32, Ordering};
-
+use board_common::line::{self, Ends, Wire};
 use embassy_stm32::interrupt;
 use embassy_stm32::pac;
 use embassy_stm32::pac::usart::Usart;
-use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::clocks::APB2_HZ;
 use crate::gpio;
-use crate::isr_cell::IsrCell;
 use crate::pins::{self, Pin};
 
 /// Bytes that may have come and not been read, less one: 11 ms of a line of 921 600 bits a second.
@@ -27,9 +20,7 @@ pub struct Uart {
     registers: Usart,
     /// Switches the driver of a half-duplex line on.
     sends: Option<Pin>,
-    received: IsrCell<Producer<'static, u8>>,
-    to_send: IsrCell<Consumer<'static, u8>>,
-    lost: AtomicU32,
+    ends: Ends,
 }
 
 /// The link.
@@ -38,42 +29,16 @@ pub static LINK: Uart = Uart::new(pac::USART1, None);
 pub static MODBUS: Uart = Uart::new(pac::USART6, Some(pins::MODBUS_SENDS));
 
 /// The queues of a UART.
-pub struct Queues {
-    received: Queue<u8, RECEIVED>,
-    to_send: Queue<u8, TO_SEND>,
-}
-
-impl Default for Queues {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Queues {
-    /// Empty ones.
-    pub const fn new() -> Self {
-        Self {
-            received: Queue::new(),
-            to_send: Queue::new(),
-        }
-    }
-}
-
+pub type Queues = line::Queues<RECEIVED, TO_SEND>;
 /// Thread mode's end of a UART.
-pub struct Line {
-    uart: &'static Uart,
-    received: Consumer<'static, u8>,
-    to_send: Producer<'static, u8>,
-}
+pub type Line = line::Line<Uart>;
 
 impl Uart {
     const fn new(registers: Usart, sends: Option<Pin>) -> Self {
         Self {
             registers,
             sends,
-            received: IsrCell::empty(),
-            to_send: IsrCell::empty(),
-            lost: AtomicU32::new(0),
+            ends: Ends::new(),
         }
     }
 
@@ -82,12 +47,7 @@ impl Uart {
     /// # Panics
     /// With the interrupt unmasked.
     pub fn open(&'static self, baud: u32, queues: &'static mut Queues) -> Line {
-        let (came, received) = queues.received.split();
-        let (to_send, going) = queues.to_send.split();
-        assert!(
-            self.received.put(came) && self.to_send.put(going),
-            "interrupts are masked"
-        );
+        let line = Line::open(self, queues);
         let registers = self.registers;
         // In sixteenths of a bit, as the register has it.
         let divider = (APB2_HZ + baud / 2) / baud.max(1);
@@ -98,11 +58,7 @@ impl Uart {
             w.set_re(true);
             w.set_rxneie(true);
         });
-        Line {
-            uart: self,
-            received,
-            to_send,
-        }
+        line
     }
 
     /// A byte has come, there is room for one, or the last one is out.
@@ -112,16 +68,12 @@ impl Uart {
         if status.rxne() || status.ore() {
             // Reading both registers clears both flags.
             let byte = registers.dr().read().dr() as u8;
-            let is_kept = status.rxne()
-                && self
-                    .received
-                    .with(|queue| queue.enqueue(byte).is_ok())
-                    .unwrap_or(false);
-            let lost = u32::from(!is_kept) + u32::from(status.ore());
-            // Only this interrupt writes.
-            let before = self.lost.load(Ordering::Relaxed);
-            self.lost
-                .store(before.wrapping_add(lost), Ordering::Relaxed);
+            if status.rxne() {
+                self.ends.came(byte);
+            }
+            if status.ore() {
+                self.ends.note_lost();
+            }
         }
         if status.txe() && registers.cr1().read().txeie() {
             self.send_next();
@@ -133,7 +85,7 @@ impl Uart {
 
     fn send_next(&self) {
         let registers = self.registers;
-        match self.to_send.with(Consumer::dequeue).flatten() {
+        match self.ends.next() {
             Some(byte) => {
                 self.drive(true);
                 registers.dr().write(|w| w.set_dr(byte.into()));
@@ -158,47 +110,20 @@ impl Uart {
             gpio::set(pin, sends);
         }
     }
+}
 
-    /// Asks for the interrupt; the only write to the register that is not the interrupt's own.
+impl Wire for Uart {
+    /// The only write to the register that is not the interrupt's own.
     fn ask_to_send(&self) {
         critical_section::with(|_| self.registers.cr1().modify(|w| w.set_txeie(true)));
     }
-}
 
-impl Line {
-    /// Moves what has come to the front of `place`; the number of bytes.
-    pub fn read(&mut self, place: &mut [u8]) -> usize {
-        let came = core::iter::from_fn(|| self.received.dequeue());
-        let mut count = 0;
-        for (byte, came) in place.iter_mut().zip(came) {
-            *byte = came;
-            count += 1;
-        }
-        count
+    fn is_idle(&self) -> bool {
+        self.registers.sr().read().tc()
     }
 
-    /// Sends all of `bytes` if there is room for them, else nothing.
-    pub fn send(&mut self, bytes: &[u8]) -> bool {
-        let room = self.to_send.capacity() - self.to_send.len();
-        if bytes.len() > room {
-            return false;
-        }
-        for byte in bytes {
-            // There is room: this is the only producer.
-            let _ = self.to_send.enqueue(*byte);
-        }
-        self.uart.ask_to_send();
-        true
-    }
-
-    /// Whether all has left the UART.
-    pub fn is_sent(&self) -> bool {
-        self.to_send.is_empty() && self.uart.registers.sr().read().tc()
-    }
-
-    /// Bytes that came and were lost; wraps.
-    pub fn lost(&self) -> u32 {
-        self.uart.lost.load(Ordering::Relaxed)
+    fn ends(&self) -> &Ends {
+        &self.ends
     }
 }
 

@@ -7,6 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
 use embassy_stm32::pac::IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
+use leadscrew_app::safe_state::period::{Period, Stuck, Watchdog, WatchdogPeriod};
 
 const SLOWEST_HZ: u32 = 17_000;
 const FASTEST_HZ: u32 = 47_000;
@@ -24,8 +25,12 @@ const _: () = assert!(LONG < 0x1000, "the watchdog counts 12 bits");
 
 /// The short period, in clocks; [`short_period`] makes it.
 static SHORT: AtomicU16 = AtomicU16::new(short_period(1000));
-/// The registers are being written, by keys that a feeding would undo.
-static IS_CHANGING: AtomicBool = AtomicBool::new(false);
+/// The registers are open, by a key that a feeding would take back.
+static IS_OPEN: AtomicBool = AtomicBool::new(false);
+/// Turns of a wait for five of its clocks, 0.3 ms at the slowest: a turn takes some 10 of the core's.
+const PATIENCE: u32 = 50_000;
+/// Which period is in force.
+pub static PERIOD: WatchdogPeriod = WatchdogPeriod::new(PATIENCE);
 
 /// Divided clocks of the short period at `tick_hz`.
 pub const fn short_period(tick_hz: u32) -> u16 {
@@ -40,39 +45,60 @@ pub const fn short_period(tick_hz: u32) -> u16 {
 
 /// Starts it with the long period, at ticks of `tick_hz` to come; nothing but a reset stops it again. It runs on while a
 /// debugger halts the processor: a halted program controls no axis.
-pub fn start(tick_hz: u32) {
+///
+/// # Errors
+/// [`Stuck`]: the short period of its reset stays, which no boot outlasts.
+pub fn start(tick_hz: u32) -> Result<(), Stuck> {
     SHORT.store(short_period(tick_hz), Ordering::Relaxed);
     IWDG.kr().write(|w| w.set_key(Key::START));
-    lengthen();
+    lengthen()
 }
 
 /// Gives it the short period. The ticks have to run.
-pub fn shorten() {
-    set(Pr::DIVIDE_BY4, SHORT.load(Ordering::Relaxed));
+///
+/// # Errors
+/// [`Stuck`]; no axis is enabled then.
+pub fn shorten() -> Result<(), Stuck> {
+    PERIOD.shorten(&Iwdg)
 }
 
 /// Gives it a period that outlasts the longest erasure of a sector.
-pub fn lengthen() {
-    set(Pr::DIVIDE_BY64, LONG);
+///
+/// # Errors
+/// [`Stuck`]; nothing may be erased then.
+pub fn lengthen() -> Result<(), Stuck> {
+    PERIOD.lengthen(&Iwdg)
 }
 
-/// In thread mode alone.
-fn set(divider: Pr, reload: u16) {
-    IS_CHANGING.store(true, Ordering::SeqCst);
-    // Each takes up to five of its clocks to get across; a write before that is lost.
-    while IWDG.sr().read().0 != 0 {}
-    IWDG.kr().write(|w| w.set_key(Key::ENABLE));
-    IWDG.pr().write(|w| w.set_pr(divider));
-    IWDG.rlr().write(|w| w.set_rl(reload));
-    while IWDG.sr().read().0 != 0 {}
-    IWDG.kr().write(|w| w.set_key(Key::RESET));
-    IS_CHANGING.store(false, Ordering::SeqCst);
+/// Its registers; thread mode alone changes the period.
+struct Iwdg;
+
+impl Watchdog for Iwdg {
+    fn is_settled(&self) -> bool {
+        IWDG.sr().read().0 == 0
+    }
+
+    fn set(&self, period: Period) {
+        let (divider, reload) = match period {
+            Period::Short => (Pr::DIVIDE_BY4, SHORT.load(Ordering::Relaxed)),
+            Period::Long => (Pr::DIVIDE_BY64, LONG),
+        };
+        IS_OPEN.store(true, Ordering::SeqCst);
+        IWDG.kr().write(|w| w.set_key(Key::ENABLE));
+        IWDG.pr().write(|w| w.set_pr(divider));
+        IWDG.rlr().write(|w| w.set_rl(reload));
+        IS_OPEN.store(false, Ordering::SeqCst);
+    }
+
+    fn feed(&self) {
+        IWDG.kr().write(|w| w.set_key(Key::RESET));
+    }
 }
 
-/// Feeds it.
+/// Feeds it; the tick alone calls this.
 #[inline(always)]
 pub fn feed() {
-    if !IS_CHANGING.load(Ordering::Relaxed) {
-        IWDG.kr().write(|w| w.set_key(Key::RESET));
+    if !IS_OPEN.load(Ordering::Relaxed) {
+        Iwdg.feed();
     }
 }

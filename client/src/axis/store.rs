@@ -144,7 +144,8 @@ impl TickCounters {
 /// Why the firmware was last started anew without being asked to, and how often since the power came.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LastReset {
-    /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another.
+    /// 0 it was not, 1 panic, 2 hard fault, 3 watchdog, 4 watchdog after ticks that ended too late one after another, 5 the
+    /// stack reached its end.
     pub reason: u8,
     /// Such starts since the power came.
     pub resets: u32,

@@ -16,6 +16,7 @@
 
 mod machine;
 
+use board_common::isr_cell::IsrCell;
 use cortex_m::peripheral::NVIC;
 use heapless::spsc::{Consumer, Queue};
 use leadscrew::telemetry::Record;
@@ -32,7 +33,6 @@ pub use machine::{MachineState, Plant};
 use crate::CLOCK_HZ;
 use crate::handoff::{Giver, Handoff, Taker};
 use crate::interrupts::Interrupt;
-use crate::isr_cell::IsrCell;
 use crate::timer::{TIMER0, TIMER1, Timer};
 use crate::uart::Uart;
 

@@ -125,6 +125,7 @@ fn cause(reset: &LastReset) -> Option<String> {
         ),
         3 => "watchdog: a tick hung, or none came".into(),
         4 => format!("watchdog: ticks ended too late from tick {place} on"),
+        5 => "the stack reached its end: tell its maker what was done".into(),
         other => format!("reason {other}, of a later version"),
     })
 }

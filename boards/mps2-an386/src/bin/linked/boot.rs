@@ -1,10 +1,11 @@
 //! From the command line and the flash to an axis, its link and its lines.
 
+use board_common::serve::ModbusLine;
 use board_mps2_an386::carrier::Carrier;
 use board_mps2_an386::exit_failure;
 use board_mps2_an386::flash::{self, CAPACITY, Flash};
 use board_mps2_an386::simulated::{COUNTERS, INTERLOCK, Plant};
-use board_mps2_an386::uart::{self, UART1};
+use board_mps2_an386::uart::{self, Line, UART1};
 use leadscrew::compensation::Stretch;
 use leadscrew::compensation::table::POINTS;
 use leadscrew::protocol::reply::{
@@ -16,9 +17,8 @@ use leadscrew_app::axis_control::AxisControl;
 use leadscrew_app::link::{Boot, Link, Maps, WORDS, WorkMemory};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
-use static_cell::ConstStaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 
-use crate::serve::ModbusLine;
 use crate::words::Words;
 
 /// Bits a second of both UARTs.
@@ -93,8 +93,9 @@ fn identity(words: &Words) -> Identity {
 }
 
 /// What carries the link, and Modbus on its UART.
-pub fn lines(words: &Words, factory: Settings) -> (Carrier, ModbusLine) {
+pub fn lines(words: &Words, factory: Settings) -> (Carrier, ModbusLine<Line>) {
     static MODBUS: ConstStaticCell<uart::Queues> = ConstStaticCell::new(uart::Queues::new());
+    static UNIT: StaticCell<Modbus> = StaticCell::new();
     let Ok(carrier) = Carrier::open(words.lockstep.as_deref(), BAUD)
         .inspect_err(|error| defmt::error!("lockstep: {}", error))
     else {
@@ -109,7 +110,7 @@ pub fn lines(words: &Words, factory: Settings) -> (Carrier, ModbusLine) {
     };
     let modbus = ModbusLine {
         line: UART1.open(BAUD, MODBUS.take()),
-        unit: Modbus::new(config.with_silence_us(SILENCE_US), factory),
+        unit: UNIT.init(Modbus::new(config.with_silence_us(SILENCE_US), factory)),
     };
     (carrier, modbus)
 }

@@ -17,14 +17,17 @@ mod boot;
 mod serve;
 mod words;
 
+use board_mps2_an386::flash::Flash;
 use board_mps2_an386::interrupts::interrupt;
 use board_mps2_an386::simulated::{self, Job};
 use board_mps2_an386::uart::{UART0, UART1};
 use board_mps2_an386::{exit_failure, time_driver};
 use embassy_executor::Spawner;
+use leadscrew_app::link::Link;
 use leadscrew_hal_mock::scenario::Fate;
+use static_cell::StaticCell;
 
-use serve::Server;
+use serve::{Common, Server};
 use words::Words;
 
 #[interrupt]
@@ -65,7 +68,9 @@ async fn main(spawner: Spawner) {
     let reports = simulated::wire(job, period, words.options.ticks);
     let (carrier, modbus) = boot::lines(&words, factory);
     simulated::unmask(&[&UART0, &UART1]);
-    let server = Server::new(carrier, modbus, link, reports, words.options.ticks);
+    static LINK: StaticCell<Link<Flash>> = StaticCell::new();
+    let common = Common::new(carrier, modbus, LINK.init(link), reports);
+    let server = Server::new(common, words.options.ticks);
     defmt::info!("linked: {=u32} Hz", tick_hz);
     spawner.spawn(serve::serve(server, period).expect("spawned once"));
 }

@@ -10,6 +10,7 @@
 
 mod saving;
 
+use board_common::line::Bytes as _;
 use board_mps2_an386::carrier::{Carrier, Path};
 use board_mps2_an386::lockstep::Turn;
 use board_mps2_an386::uart::{Queues, UART0, UART1};

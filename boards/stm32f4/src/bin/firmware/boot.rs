@@ -1,5 +1,6 @@
 //! From the flash to an axis, its link and its lines.
 
+use board_common::serve::ModbusLine;
 use board_stm32f4::clocks::{FAST_TIMER_HZ, TIMER_HZ};
 use board_stm32f4::converter::Output;
 use board_stm32f4::encoder::{self, RING};
@@ -28,7 +29,7 @@ use leadscrew_app::tick_period::TickPeriod;
 use static_cell::{ConstStaticCell, StaticCell};
 
 use crate::factory;
-use crate::serve::{ModbusLine, Server};
+use crate::serve::Server;
 
 /// Bits a second of both UARTs.
 const BAUD: u32 = 115_200;

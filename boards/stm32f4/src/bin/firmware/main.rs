@@ -13,17 +13,23 @@ mod boot;
 mod factory;
 mod serve;
 
-use board_stm32f4::{clocks, gpio, priorities, safe_state, tick, watchdog};
+use board_stm32f4::{clocks, gpio, priorities, reset_record, safe_state, tick, watchdog};
 use embassy_executor::Spawner;
+use leadscrew_app::modbus::Panel as _;
+use leadscrew_app::safe_state::period::Stuck;
+use leadscrew_app::safe_state::record::Record;
 use static_cell::StaticCell;
 
 use serve::Server;
 
+const STUCK: &str = "the watchdog did not take its period";
+
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    let reset = reset_record::take();
     clocks::start();
     gpio::configure();
-    match start() {
+    match start(reset) {
         Ok(server) => match serve::serve(server) {
             Ok(task) => spawner.spawn(task),
             Err(_) => safe_state::stop("the task is spawned already"),
@@ -34,15 +40,17 @@ async fn main(spawner: Spawner) {
 
 /// Makes all of it, then lets the interrupts in, the tick last; or says why not.
 #[inline(never)]
-fn start() -> Result<&'static mut Server, &'static str> {
+fn start(reset: Record) -> Result<&'static mut Server, &'static str> {
     static SERVER: StaticCell<Server> = StaticCell::new();
     let mut core = cortex_m::Peripherals::take().ok_or("main runs once")?;
     let (server, period) = boot::boot()?;
     let server = SERVER.init(server);
-    watchdog::start(server.tick_hz() as u32);
+    server.link.set_reset(reset);
+    let tick_hz = server.link.view().scale.tick_hz();
+    watchdog::start(tick_hz as u32).map_err(|Stuck| STUCK)?;
     priorities::unmask(&mut core.NVIC);
     tick::start(period);
-    watchdog::shorten();
-    defmt::info!("running at {=f64} Hz", server.tick_hz());
+    watchdog::shorten().map_err(|Stuck| STUCK)?;
+    defmt::info!("running at {=f64} Hz", tick_hz);
     Ok(server)
 }

@@ -43,3 +43,21 @@ impl<T: Send> IsrCell<T> {
         Some(result)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_context_that_comes_in_between_is_refused() {
+        let cell = IsrCell::empty();
+        assert_eq!(cell.with(|value: &mut u32| *value), None, "empty");
+        assert!(cell.put(1));
+        let inner = cell.with(|value| {
+            *value += 1;
+            (cell.with(|value| *value), cell.put(9))
+        });
+        assert_eq!(inner, Some((None, false)));
+        assert_eq!(cell.with(|value| *value), Some(2));
+    }
+}
