@@ -2,7 +2,9 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
+use leadscrew::estimator::observer::Gains;
 use leadscrew::params::AxisConfig;
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::service::Ticket;
@@ -49,10 +51,24 @@ pub struct Outcome {
     pub result: Result<(), Refusal>,
 }
 
+/// A configuration as the tick takes it, with the gains that were solved for it.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The configuration.
+    pub config: AxisConfig,
+    /// Those of its estimators.
+    pub gains: Gains,
+}
+
+/// A place for one, which goes back and forth: a configuration is large.
+pub type ConfigPlace = &'static mut Vec<Prepared, 1>;
+
 /// Memory of the queues; captures have `CAPTURED` words, and the one that thread mode looks at `LOOKED_AT` edges.
 pub struct Queues<const CAPTURED: usize = WORDS, const LOOKED_AT: usize = EDGES> {
     requests: Queue<Request, REQUESTS>,
-    configs: Queue<(Ticket, AxisConfig), 2>,
+    prepared: Vec<Prepared, 1>,
+    configs: Queue<(Ticket, ConfigPlace), 2>,
+    configs_back: Queue<ConfigPlace, 2>,
     outcomes: Queue<Outcome, OUTCOMES>,
     faults: Queue<FirstFault, 4>,
     scopes: Queue<Scope<'static>, 2>,
@@ -72,7 +88,8 @@ const NO_BEAT: u32 = 0;
 /// What the tick holds of them.
 pub struct TickEnds {
     pub(crate) requests: Consumer<'static, Request>,
-    pub(crate) configs: Consumer<'static, (Ticket, AxisConfig)>,
+    pub(crate) configs: Consumer<'static, (Ticket, ConfigPlace)>,
+    pub(crate) configs_back: Producer<'static, ConfigPlace>,
     pub(crate) outcomes: Producer<'static, Outcome>,
     pub(crate) faults: Producer<'static, FirstFault>,
     pub(crate) scopes: Consumer<'static, Scope<'static>>,
@@ -86,9 +103,11 @@ pub struct TickEnds {
 pub struct LinkEnds {
     /// To the axis.
     pub requests: Producer<'static, Request>,
-    /// New configurations, with their tickets.
-    pub configs: Producer<'static, (Ticket, AxisConfig)>,
-    /// What came of both.
+    configs: Producer<'static, (Ticket, ConfigPlace)>,
+    configs_back: Consumer<'static, ConfigPlace>,
+    /// Here, unless the tick has it.
+    config_place: Option<ConfigPlace>,
+    /// What came of requests and configurations.
     pub outcomes: Consumer<'static, Outcome>,
     /// The first fault, told again when others follow it.
     pub faults: Consumer<'static, FirstFault>,
@@ -115,7 +134,9 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
     pub const fn new() -> Self {
         Self {
             requests: Queue::new(),
+            prepared: Vec::new(),
             configs: Queue::new(),
+            configs_back: Queue::new(),
             outcomes: Queue::new(),
             faults: Queue::new(),
             scopes: Queue::new(),
@@ -132,6 +153,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
     pub fn split(&'static mut self) -> (TickEnds, CaptureSender, LinkEnds, CaptureReceiver) {
         let (ask, asked) = self.requests.split();
         let (configure, configs) = self.configs.split();
+        let (configured, configs_back) = self.configs_back.split();
         let (answer, outcomes) = self.outcomes.split();
         let (tell, faults) = self.faults.split();
         let (lend, scopes) = self.scopes.split();
@@ -141,6 +163,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
         let tick = TickEnds {
             requests: asked,
             configs,
+            configs_back: configured,
             outcomes: answer,
             faults: tell,
             scopes,
@@ -152,6 +175,8 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
         let link = LinkEnds {
             requests: ask,
             configs: configure,
+            configs_back,
+            config_place: Some(&mut self.prepared),
             outcomes,
             faults,
             scopes: lend,
@@ -167,6 +192,24 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
 }
 
 impl LinkEnds {
+    /// Solves for the gains of a configuration and hands both to the tick, which answers with `ticket`.
+    ///
+    /// # Errors
+    /// [`Refusal::QueueFull`] while the tick has not taken the one before.
+    pub fn configure(&mut self, ticket: Ticket, config: &AxisConfig) -> Result<(), Refusal> {
+        let place = self.config_place.take();
+        let place = place.or_else(|| self.configs_back.dequeue());
+        let place = place.ok_or(Refusal::QueueFull)?;
+        place.clear();
+        // There is room, now that it is empty, and in the queue, as there is no other place.
+        let _ = place.push(Prepared {
+            config: *config,
+            gains: config.estimators.gains(),
+        });
+        let _ = self.configs.enqueue((ticket, place));
+        Ok(())
+    }
+
     /// Tells the tick that thread mode lives: it has taken the report of `tick`.
     pub fn beat(&self, tick: u32) {
         // One tick in 2³² is told late.

@@ -86,11 +86,17 @@ struct BoardLine {
     tick: u32,
 }
 
+fn service() -> Service {
+    let mut settings = settings();
+    let config = settings.validate().unwrap();
+    Service::new(IDENTITY, &settings, &config)
+}
+
 impl BoardLine {
     fn new() -> Self {
         Self {
             board: Rc::default(),
-            service: Rc::new(RefCell::new(Service::new(IDENTITY, &settings()).unwrap())),
+            service: Rc::new(RefCell::new(service())),
             tick: 0,
         }
     }
@@ -111,7 +117,7 @@ impl Line for BoardLine {
             });
         } else {
             board.away -= 1;
-            *service = Service::new(IDENTITY, &settings()).unwrap();
+            *service = self::service();
         }
         Ok(Duration::from_millis(self.tick.into()))
     }

@@ -19,6 +19,7 @@ use crate::controller::{Controller, Demand};
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
 use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::observer::Gains;
 use crate::estimator::paths::Estimators;
 use crate::estimator::{Estimator, Evidence, Variances};
 use crate::homing::Homing;
@@ -279,11 +280,23 @@ impl<'m> Axis<'m> {
 
     /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
     /// the controller's transfer term; another estimator starts as after a long motion at the velocity
-    /// estimated last. The encoder map stays.
+    /// estimated last. The encoder map stays. Solves for an observer's gains, which takes longer than a tick.
     ///
     /// # Errors
     /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
     pub fn reconfigure(&mut self, config: &AxisConfig) -> Result<(), ReconfigureError> {
+        self.reconfigure_with(config, &config.estimators.gains())
+    }
+
+    /// The same in the tick, with the [gains](crate::estimator::paths::Config::gains) that were solved for before.
+    ///
+    /// # Errors
+    /// As [`Self::reconfigure`].
+    pub fn reconfigure_with(
+        &mut self,
+        config: &AxisConfig,
+        gains: &Gains,
+    ) -> Result<(), ReconfigureError> {
         if self.outputs.enabled && self.outputs.moving {
             ReconfigureError::check(&self.config, config)?;
         }
@@ -292,8 +305,9 @@ impl<'m> Axis<'m> {
         }
         self.edges.reconfigure(config.edges);
         if config.estimators != self.config.estimators {
-            self.estimators = Estimators::new(&config.estimators);
-            self.estimators.prime(self.outputs.estimate.velocity);
+            let velocity = self.outputs.estimate.velocity;
+            self.estimators
+                .reconfigure(&config.estimators, gains, velocity);
         }
         self.controller
             .reconfigure(config.controller, self.output.command());

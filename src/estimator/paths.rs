@@ -52,12 +52,10 @@ pub struct Config {
     first: EstimatorConfig,
     second: Option<EstimatorConfig>,
     paths: Paths,
-    /// Those of the observer among them.
-    gains: Gains,
 }
 
 impl Config {
-    /// `first` and, where it is given, `second` on `paths`; the gains of an observer are solved for.
+    /// `first` and, where it is given, `second` on `paths`.
     ///
     /// # Errors
     /// [`RangeError`] for a path to a second estimator that is not given, a position that lags, or two observers of
@@ -86,7 +84,6 @@ impl Config {
             checked("lag of the fed back position, ticks", lag, 0.0, 0.0)?;
         }
         Ok(Self {
-            gains: gains_of(&first, second.as_ref()),
             first,
             second,
             paths,
@@ -97,10 +94,21 @@ impl Config {
     #[must_use]
     pub fn single(first: EstimatorConfig) -> Self {
         Self {
-            gains: gains_of(&first, None),
             first,
             second: None,
             paths: Paths::default(),
+        }
+    }
+
+    /// Solves for the gains of the observer among them: some million operations, outside the tick. Without one they are
+    /// [`Gains::NONE`].
+    #[must_use]
+    #[inline(never)]
+    pub fn gains(&self) -> Gains {
+        match (&self.first, &self.second) {
+            (EstimatorConfig::Observer(config), _)
+            | (_, Some(EstimatorConfig::Observer(config))) => Gains::solve(config),
+            _ => Gains::NONE,
         }
     }
 
@@ -133,10 +141,40 @@ impl Config {
         self.paths != other.paths || self.second != other.second
     }
 
+    fn is_display_alone(&self) -> bool {
+        let Paths {
+            velocity,
+            acceleration,
+            display,
+            ..
+        } = self.paths;
+        [velocity, acceleration, display] == [Choice::First, Choice::First, Choice::Second]
+    }
+
     /// An estimator looks at the edges.
     fn reads_edges(&self) -> bool {
         self.first.reads_edges() || self.second.is_some_and(|second| second.reads_edges())
     }
+}
+
+/// Puts another estimator in the place of one. On a frame of its own: an estimator is large.
+#[inline(never)]
+fn restart(place: &mut Estimator, config: &EstimatorConfig, gains: &Gains, velocity: Velocity) {
+    *place = Estimator::with_gains(config, gains);
+    place.prime(velocity);
+}
+
+/// Puts an estimator where there was none.
+#[inline(never)]
+fn begin(
+    place: &mut Option<Estimator>,
+    config: &EstimatorConfig,
+    gains: &Gains,
+    velocity: Velocity,
+) {
+    place
+        .insert(Estimator::with_gains(config, gains))
+        .prime(velocity);
 }
 
 /// The estimator of a path.
@@ -149,13 +187,6 @@ const fn chosen<'c>(
         (Choice::Second, Some(second)) => second,
         _ => first,
     }
-}
-
-/// Gains of the observer among them.
-fn gains_of(first: &EstimatorConfig, second: Option<&EstimatorConfig>) -> Gains {
-    let gains = first.gains();
-    let gains = gains.or_else(|| second.and_then(EstimatorConfig::gains));
-    gains.unwrap_or(Gains::NONE)
 }
 
 /// The estimators.
@@ -174,33 +205,32 @@ pub struct Estimators {
 }
 
 impl Estimators {
-    /// Estimators that wait for their first sample.
+    /// Estimators that wait for their first sample. Outside the tick: gains are solved for.
     #[must_use]
     pub fn new(config: &Config) -> Self {
-        let Paths {
-            velocity,
-            acceleration,
-            display,
-            ..
-        } = config.paths;
+        let gains = config.gains();
         Self {
-            first: Estimator::with_gains(&config.first, &config.gains),
-            second: (config.second.as_ref())
-                .map(|second| Estimator::with_gains(second, &config.gains)),
+            first: Estimator::with_gains(&config.first, &gains),
+            second: (config.second.as_ref()).map(|second| Estimator::with_gains(second, &gains)),
             paths: config.paths,
             reads_edges: config.reads_edges(),
-            is_display_alone: [velocity, acceleration, display]
-                == [Choice::First, Choice::First, Choice::Second],
+            is_display_alone: config.is_display_alone(),
             feedback: Estimate::default(),
         }
     }
 
-    /// Starts anew as after a long motion at `velocity`. Outside the tick.
-    pub fn prime(&mut self, velocity: Velocity) {
-        self.first.prime(velocity);
-        if let Some(second) = &mut self.second {
-            second.prime(velocity);
+    /// Takes other estimators, with the [gains](Config::gains) solved for them, which start as after a long motion at
+    /// `velocity`.
+    pub fn reconfigure(&mut self, config: &Config, gains: &Gains, velocity: Velocity) {
+        restart(&mut self.first, &config.first, gains, velocity);
+        match (&mut self.second, &config.second) {
+            (Some(place), Some(second)) => restart(place, second, gains, velocity),
+            (place, None) => *place = None,
+            (place, Some(second)) => begin(place, second, gains, velocity),
         }
+        self.paths = config.paths;
+        self.reads_edges = config.reads_edges();
+        self.is_display_alone = config.is_display_alone();
     }
 
     /// The first estimator.

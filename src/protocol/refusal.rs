@@ -141,7 +141,7 @@ refusals! {
     /// The store cannot be used, or its flash failed.
     StoreFailed = 48, "Erase all of it; if that fails, the flash is worn out: change the board.";
     /// The memory for maps is taken until the next restart.
-    MapMemoryTaken = 49, "Restart the axis: a saved map is in use then.";
+    MapMemoryTaken = 49, "Restart the axis: a saved map is in use then. On a board with room for one map, erase the saved one first.";
     /// A gear is engaged, or a thread is armed.
     Engaged = 50, "Disengage it first.";
 }

@@ -116,7 +116,8 @@ impl Loop {
             calm: &params.calm,
         };
         let estimators = Estimators::new(params.estimator, params.second_estimator, params.paths)?;
-        let sensing = |choice: Choice| Sensing::new(estimators.of(choice), octave);
+        let gains = estimators.gains();
+        let sensing = |choice: Choice| Sensing::new(estimators.of(choice), &gains, octave);
         Ok(Self {
             feedback: law.feedback(scale, full)?,
             position: params.paths.position,

@@ -11,7 +11,7 @@
 use super::complex::Complex;
 use crate::capture::Unwrapper;
 use crate::edges::{EdgeConfig, EdgeReader};
-use crate::estimator::observer::Model;
+use crate::estimator::observer::{Gains, Model};
 use crate::estimator::{Estimator, EstimatorConfig, Evidence, observer, polynomial};
 use crate::hal::Capture;
 use crate::uncertainty::EdgeErrors;
@@ -43,14 +43,14 @@ pub enum Sensing {
 }
 
 impl Sensing {
-    /// The model of `config`; `octave` is log₂ of the edges in a tick that an observer counts on.
+    /// The model of `config`; `octave` is log₂ of the edges in a tick that an observer counts on, whose `gains` they are.
     ///
     /// # Errors
     /// None with estimators that have been configured.
-    pub fn new(config: &EstimatorConfig, octave: i32) -> Result<Self, RangeError> {
+    pub fn new(config: &EstimatorConfig, gains: &Gains, octave: i32) -> Result<Self, RangeError> {
         match config {
             EstimatorConfig::Observer(config) => {
-                Ok(Self::Observer(config.linear(Model::Drive, octave)))
+                Ok(Self::Observer(config.linear(gains, Model::Drive, octave)))
             }
             EstimatorConfig::Polynomial(config) => Ok(Self::Samples(least_squares(config))),
             other => Ok(Self::Counts(impulse(*other)?)),

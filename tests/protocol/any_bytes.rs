@@ -98,7 +98,9 @@ pub fn check(bytes: &[u8]) -> usize {
         work_memory: 0,
         lead_ticks: 4,
     };
-    let mut service = Service::new(identity, &Settings::new(estimator)).unwrap();
+    let mut settings = Settings::new(estimator);
+    let config = settings.validate().unwrap();
+    let mut service = Service::new(identity, &settings, &config);
     let mut axis = Willing::default();
     let mut answers = 0;
     for (tick, part) in (0..).zip(bytes.chunks(50)) {

@@ -135,6 +135,7 @@ pub struct Rig {
 impl Rig {
     pub fn new() -> Self {
         let mut settings = settings();
+        let config = settings.validate().unwrap();
         Self {
             board: Board::new(
                 &BoardParams::default(),
@@ -144,13 +145,13 @@ impl Rig {
             )
             .unwrap(),
             way: Way {
-                axis: Axis::new(settings.validate().unwrap()),
+                axis: Axis::new(config),
                 enable: false,
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
             },
-            service: Service::new(IDENTITY, &settings).unwrap(),
+            service: Service::new(IDENTITY, &settings, &config),
             client: Client::new(),
             to_axis: Vec::new(),
             to_tool: Vec::new(),

@@ -7,7 +7,7 @@ use leadscrew::protocol::service::Ticket;
 use leadscrew::scope::Stream;
 
 use super::AxisControl;
-use crate::queues::{Outcome, dequeue, enqueue};
+use crate::queues::{Outcome, Prepared, dequeue, enqueue};
 
 /// What thread mode asks for, and when.
 #[derive(Debug)]
@@ -114,13 +114,15 @@ impl<B> AxisControl<B> {
     /// On a frame of its own, which other ticks do without.
     #[inline(never)]
     fn take_config(&mut self) {
-        // In place until it is done: a configuration is large.
-        if let Some((ticket, config)) = self.ends.configs.peek() {
-            let ticket = *ticket;
-            let result = self.axis.reconfigure(config).map_err(Refusal::from);
-            let _ = dequeue(&mut self.ends.configs);
-            self.answer(ticket, result);
+        let Some((ticket, place)) = dequeue(&mut self.ends.configs) else {
+            return;
+        };
+        if let Some(Prepared { config, gains }) = place.first() {
+            let result = self.axis.reconfigure_with(config, gains);
+            self.answer(ticket, result.map_err(Refusal::from));
         }
+        // There is one place, so there is room.
+        let _ = enqueue(&mut self.ends.configs_back, place);
     }
 
     fn answer(&mut self, ticket: Ticket, result: Result<(), Refusal>) {

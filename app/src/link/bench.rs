@@ -137,8 +137,7 @@ impl<F: NorFlash> Port for Bench<F> {
 
     fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal> {
         let ticket = self.next_ticket;
-        let passed = self.ends.configs.enqueue((ticket, *config));
-        passed.map_err(|_| Refusal::QueueFull)?;
+        self.ends.configure(ticket, config)?;
         self.scale = config.scale;
         self.next_ticket = self.next_ticket.wrapping_add(1);
         Ok(Passed::OnItsWay(ticket))

@@ -146,7 +146,7 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
             map_places,
             map: found.map,
         };
-        let link = parts.link(&found.settings, link)?;
+        let link = parts.link(&found.settings, control.axis_mut().config(), link)?;
         Ok((control, link, loaded))
     }
 }
@@ -195,6 +195,7 @@ impl<F: NorFlash> Parts<F> {
     fn link<'l>(
         self,
         settings: &Settings,
+        config: &AxisConfig,
         place: impl FnOnce(Link<F>) -> &'l mut Link<F>,
     ) -> Result<&'l mut Link<F>, ParamError> {
         let motion = &settings.axis.motion;
@@ -227,7 +228,7 @@ impl<F: NorFlash> Parts<F> {
             reset: Default::default(),
         };
         Ok(place(Link {
-            service: Service::new(self.identity, settings)?,
+            service: Service::new(self.identity, settings, config),
             bench,
             asked: None,
         }))

@@ -38,6 +38,10 @@ impl<F: NorFlash> Bench<F> {
         }
         // One that is under way is dropped.
         let _ = self.end_learning();
+        // Said now: a run takes minutes.
+        if self.map_places.is_empty() {
+            return Err(Refusal::MapMemoryTaken);
+        }
         let work = self.lent.reclaim().ok_or(Refusal::WorkMemoryLent)?;
         if let Err(refusal) = Learner::check(edges, &work) {
             self.lent = Lent::Free(work);

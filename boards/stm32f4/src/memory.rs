@@ -1,38 +1,76 @@
-//! Memory to work with, lent by the link.
+//! What lies in the CCM, which no DMA reaches: memory to work with, lent by the link, and the queue of reports.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 
+use heapless::spsc::Queue;
 use leadscrew::calibration::Work;
+use leadscrew::protocol::reply::CAN_LEARN;
 use leadscrew_app::link::WorkMemory;
+use leadscrew_app::report::Report;
 use leadscrew_app::store::SET_BYTES;
 
-/// Words of the work memory: what is left of the RAM. An encoder of 10 000 edges cannot be learned in it.
-pub const WORDS: usize = 2_048;
-/// Halves of it: what the store needs.
-const HALVES: usize = SET_BYTES / 2;
+/// Words of the work memory: where there is a CCM, as many edges of an encoder can be learned; else short records have room.
+pub const WORDS: usize = if HAS_CCM {
+    leadscrew_app::link::WORDS
+} else {
+    1_024
+};
+/// Halves of it: as many again, or what the store needs.
+const HALVES: usize = if HAS_CCM { WORDS } else { SET_BYTES / 2 };
+/// What it suffices for, as bits of an identity.
+pub const CAPABILITIES: u32 = if HAS_CCM { CAN_LEARN } else { 0 };
+const HAS_CCM: bool = cfg!(not(feature = "stm32f446re"));
+/// Ticks that thread mode may be behind.
+pub const REPORTS: usize = 24;
 
 type Memory = WorkMemory<WORDS, HALVES>;
 
-struct Place(UnsafeCell<MaybeUninit<Memory>>);
+/// A place that is given away once. The start neither clears nor loads it.
+struct Place<T> {
+    memory: UnsafeCell<MaybeUninit<T>>,
+}
 
-// SAFETY: reached by `take_work` alone, which gives it away once.
-unsafe impl Sync for Place {}
+// SAFETY: reached by `take` alone, which gives it away once.
+unsafe impl<T: Send> Sync for Place<T> {}
 
-static WORK: Place = Place(UnsafeCell::new(MaybeUninit::uninit()));
-static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+impl<T> Place<T> {
+    const fn new() -> Self {
+        Self {
+            memory: UnsafeCell::new(MaybeUninit::uninit()),
+        }
+    }
+
+    /// The place, at the first call. The flag is not part of it, as nobody clears it.
+    #[expect(clippy::mut_from_ref, reason = "it is given away once")]
+    fn take(&'static self, is_taken: &AtomicBool) -> Option<&'static mut MaybeUninit<T>> {
+        if is_taken.swap(true, Ordering::Relaxed) {
+            return None;
+        }
+        // SAFETY: given away once, by the flag, of which there is one for each place.
+        Some(unsafe { &mut *self.memory.get() })
+    }
+}
 
 /// The work memory, cleared, once.
 pub fn take_work() -> Option<Work<'static>> {
-    if IS_TAKEN.swap(true, Ordering::Relaxed) {
-        return None;
-    }
-    // SAFETY: given away once, by the flag. Integers alone are in it, so all zeros are one.
+    #[unsafe(link_section = ".ccm.work")]
+    static WORK: Place<Memory> = Place::new();
+    static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+    let place = WORK.take(&IS_TAKEN)?;
+    // SAFETY: integers alone are in it, so all zeros are one. Written in place: it is larger than the stack.
     let memory = unsafe {
-        let place = WORK.0.get();
-        place.write_bytes(0, 1);
-        (*place).assume_init_mut()
+        place.as_mut_ptr().write_bytes(0, 1);
+        place.assume_init_mut()
     };
     Some(memory.lend())
+}
+
+/// The queue of reports, empty, once.
+pub fn take_reports() -> Option<&'static mut Queue<Report, REPORTS>> {
+    #[unsafe(link_section = ".ccm.reports")]
+    static QUEUE: Place<Queue<Report, REPORTS>> = Place::new();
+    static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+    Some(QUEUE.take(&IS_TAKEN)?.write(Queue::new()))
 }

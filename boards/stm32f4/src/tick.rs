@@ -21,15 +21,13 @@ use leadscrew_app::store::Interlock;
 use leadscrew_app::telemetry::Ready;
 use leadscrew_app::tick::{Counters, Runtime, TickTimer};
 use leadscrew_app::tick_period::TickPeriod;
-use static_cell::StaticCell;
 
 use crate::clocks::TIMER_HZ;
 use crate::converter::Output;
 use crate::machine::Machine;
+use crate::memory::REPORTS;
 use crate::{encoder, flash, lines, reset_record, safe_state, stack, watchdog};
 
-/// Ticks that thread mode may be behind.
-const QUEUE: usize = 24;
 /// A tick has to end within this part of its period, in 1/8.
 const BUDGET: u32 = 6;
 
@@ -70,10 +68,10 @@ pub fn wire(
     control: &'static mut AxisControl<Machine>,
     machine: Machine,
     mut output: Output,
+    queue: &'static mut Queue<Report, REPORTS>,
     tick_hz: f64,
 ) -> Consumer<'static, Report> {
-    static REPORTS: StaticCell<Queue<Report, QUEUE>> = StaticCell::new();
-    let (producer, reports) = REPORTS.init(Queue::new()).split();
+    let (producer, reports) = queue.split();
     let period = (f64::from(TIMER_HZ) / tick_hz) as u32;
     let budget = period / 8 * BUDGET;
     output.pace(tick_hz);

@@ -42,17 +42,18 @@ impl Bench {
 
     fn with(board: &BoardParams) -> Self {
         let mut settings = settings();
+        let config = settings.validate().unwrap();
         let machine = MachineParams::z_16k20f3();
         Self {
             board: Board::new(board, &machine, 1000.0, 1).unwrap(),
             way: Way {
-                axis: CoreAxis::new(settings.validate().unwrap()),
+                axis: CoreAxis::new(config),
                 enable: false,
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
             },
-            service: Service::new(IDENTITY, &settings).unwrap(),
+            service: Service::new(IDENTITY, &settings, &config),
             counts_per_mm: settings.axis.motion.counts_per_mm,
             trace: Vec::new(),
             emergency_stop: false,

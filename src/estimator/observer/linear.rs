@@ -25,9 +25,9 @@ pub struct Linear {
 const MEASURED: [f64; 4] = [1.0, -MEAN_AGE, MEAN_AGE * MEAN_AGE / 2.0, 0.0];
 
 impl Config {
-    /// The equations with the gains for 2^`octave` edges a tick, by `model`. Solves for them.
+    /// The equations with those of the `gains` solved for it that are for 2^`octave` edges a tick, by `model`.
     #[must_use]
-    pub fn linear(&self, model: Model, octave: i32) -> Linear {
+    pub fn linear(&self, gains: &Gains, model: Model, octave: i32) -> Linear {
         let [stiffness, damping] = match model {
             Model::Drive => self.jerk_coefficients(),
             Model::Kinematic => [0.0; 2],
@@ -37,7 +37,7 @@ impl Config {
             Velocity::FRAC_NBITS.cast_signed().wrapping_neg(),
         );
         Linear {
-            gains: Gains::solve(self).of(model, octave),
+            gains: gains.of(model, octave),
             stiffness,
             damping,
             full_velocity: full,

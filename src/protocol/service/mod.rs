@@ -20,7 +20,7 @@ use super::refusal::Refusal;
 use super::reply::Reply;
 use super::request::Request;
 use super::session::{Arrival, Session};
-use crate::params::ParamError;
+use crate::params::AxisConfig;
 use crate::settings::Settings;
 use crate::telemetry::Record;
 use motion::Mover;
@@ -88,23 +88,19 @@ struct Inner {
 }
 
 impl Service {
-    /// The service of an axis with `settings`, which its configuration was made of.
-    ///
-    /// # Errors
-    /// [`ParamError`] if no configuration can be made of them.
-    pub fn new(identity: Identity, settings: &Settings) -> Result<Self, ParamError> {
-        let mut settings = *settings;
-        let config = settings.validate()?;
+    /// The service of an axis with `settings`, and the configuration that was made of them.
+    #[must_use]
+    pub fn new(identity: Identity, settings: &Settings, config: &AxisConfig) -> Self {
         let params = &settings.axis;
         let tick_hz = libm::round(params.tick_hz) as u32;
         let feed = params.motion.max_feed_mm_per_min;
         let rates = [params.tick_hz, params.timer_hz];
-        Ok(Self {
+        Self {
             decoder: Decoder::new(),
             inner: Inner {
                 identity,
                 tick_hz,
-                settings,
+                settings: *settings,
                 is_unsaved: false,
                 edit: None,
                 rates,
@@ -112,7 +108,7 @@ impl Service {
                 session: Session::default(),
                 lease: Lease::new(tick_hz),
                 watch: Watch::default(),
-                mover: Mover::new(&config, feed, identity.lead_ticks.max(1)),
+                mover: Mover::new(config, feed, identity.lead_ticks.max(1)),
                 last_done: Done::Nothing,
                 every: 0,
                 until_record: 0,
@@ -121,7 +117,7 @@ impl Service {
                 records_lost: 0,
                 buffer: FrameBuffer::default(),
             },
-        })
+        }
     }
 
     /// What was dropped of what came.

@@ -74,7 +74,8 @@ pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
     }
     let tick_hz = link.view().scale.tick_hz();
     let machine = machine(&link.settings(), tick_hz);
-    let reports = tick::wire(control, machine, output(), tick_hz);
+    let queue = memory::take_reports().ok_or("the reports' queue is taken")?;
+    let reports = tick::wire(control, machine, output(), queue, tick_hz);
     let period = TickPeriod::nearest(FAST_TIMER_HZ, tick_hz).ok_or("no timer has that rate")?;
     Ok((server(link, reports)?, period))
 }
@@ -96,7 +97,13 @@ fn identity() -> Identity {
             "release"
         },
         board: "stm32f4",
-        capabilities: CAN_HOME | CAN_SET | CAN_RECORD | CAN_SAVE | CAN_EXPERIMENT | CAN_SCOPE,
+        capabilities: CAN_HOME
+            | CAN_SET
+            | CAN_RECORD
+            | CAN_SAVE
+            | CAN_EXPERIMENT
+            | CAN_SCOPE
+            | memory::CAPABILITIES,
         work_memory: (4 * memory::WORDS) as u32,
         lead_ticks: LEAD_TICKS,
     }
