@@ -13,8 +13,10 @@
 //! reference manual's block diagram; measure it on a board.)
 
 mod error;
+mod inputs;
 
 pub use error::{Bottleneck, FilterError};
+pub use inputs::{InputError, Inputs, InputsInForce};
 
 use leadscrew::units::{TIMER_HZ, checked};
 

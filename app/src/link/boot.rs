@@ -217,6 +217,7 @@ impl<F: NorFlash> Parts<F> {
             next_ticket: 0,
             wants_restart: false,
             reset: Default::default(),
+            inputs: None,
         };
         *place = Some(Link {
             service: Service::new(self.identity, settings)?,
