@@ -114,7 +114,7 @@ fn machine(settings: &Settings) -> (Machine, InputsInForce) {
     }
     let filter = chosen.unwrap_or(InputFilter::shortest());
     encoder::start(EDGES.address(), filter);
-    latches::start();
+    latches::start(filter);
     let machine = Machine::new(filter, chosen.is_ok(), References::start());
     let inputs = encoder::INPUTS;
     (machine, InputsInForce { inputs, filter })
