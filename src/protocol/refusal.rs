@@ -102,7 +102,7 @@ refusals! {
     NotSupported = 28, "See the capabilities in the hello.";
     /// The start of the move has passed before the axis saw it.
     TooLate = 29, "Repeat the request; tell of it if it happens often: the axis's planner is too slow.";
-    /// The control rate or the edge timer was set to another value.
+    /// The control rate, the edge timer or what the inputs' filter has to pass was set to another value.
     RestartNeeded = 30, "Save the parameters and restart the axis.";
     /// The parameter is not one of the words.
     UnknownWord = 31, "See docs/parameters.md for its words.";
@@ -144,6 +144,8 @@ refusals! {
     MapMemoryTaken = 49, "Restart the axis: a saved map is in use then. On a board with room for one map, erase the saved one first.";
     /// A gear is engaged, or a thread is armed.
     Engaged = 50, "Disengage it first.";
+    /// The encoder would be faster at full command than the board's inputs can follow; it was not taken.
+    TooFastForInputs = 51, "Lower motion.full_command_feed_mm_per_min or motion.counts_per_mm, or raise tick_hz; docs/board.md has the limits.";
 }
 
 impl core::fmt::Display for Refusal {

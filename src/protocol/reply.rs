@@ -184,7 +184,7 @@ messages! {
         Counters = 8 {
             /// Ticks.
             ticks: u32,
-            /// Ticks whose inputs came late.
+            /// Ticks that did not run, or whose inputs came late.
             late: u32,
             /// Ticks that took too long.
             overlong: u32,

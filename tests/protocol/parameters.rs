@@ -210,3 +210,22 @@ fn another_control_rate_waits_for_a_restart() {
     rig.do_(&rate(1000.0));
     rig.do_(&Request::Enable {});
 }
+
+#[test]
+fn what_the_inputs_cannot_follow_is_refused_and_what_they_could_waits_for_a_restart() {
+    let mut rig = Rig::new();
+    rig.hello();
+    rig.do_(&Request::TakeLease {});
+    rig.way.followed = Some((10_000.0, 20_000.0));
+    let feed = |value| Request::SetParameter {
+        name: "motion.full_command_feed_mm_per_min",
+        value,
+    };
+    let before = *rig.service.settings();
+    rig.refused(&feed(20_001.0), Refusal::TooFastForInputs);
+    assert_eq!(*rig.service.settings(), before);
+    rig.do_(&feed(20_000.0));
+    rig.refused(&Request::Enable {}, Refusal::RestartNeeded);
+    rig.do_(&feed(9_999.0));
+    rig.do_(&Request::Enable {});
+}

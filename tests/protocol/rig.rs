@@ -73,6 +73,8 @@ pub struct Way {
     pub enables: u32,
     /// There is no way on.
     pub is_blocked: bool,
+    /// Feed at full command that the inputs follow as they are, and that they follow after a restart, mm/min.
+    pub followed: Option<(f64, f64)>,
 }
 
 impl Port for Way {
@@ -97,6 +99,15 @@ impl Port for Way {
     fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal> {
         self.axis.reconfigure(config)?;
         Ok(Passed::Taken)
+    }
+
+    fn check(&self, settings: &Settings) -> Result<(), Refusal> {
+        let feed = settings.axis.motion.full_command_feed_mm_per_min;
+        match self.followed {
+            Some((_, at_most)) if feed > at_most => Err(Refusal::TooFastForInputs),
+            Some((now, _)) if feed > now => Err(Refusal::RestartNeeded),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -150,6 +161,7 @@ impl Rig {
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
+                followed: None,
             },
             service: Service::new(IDENTITY, &settings, &config),
             client: Client::new(),

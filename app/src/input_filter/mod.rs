@@ -13,8 +13,10 @@
 //! reference manual's block diagram; measure it on a board.)
 
 mod error;
+mod inputs;
 
 pub use error::{Bottleneck, FilterError};
+pub use inputs::{InputError, Inputs, InputsInForce};
 
 use leadscrew::units::{TIMER_HZ, checked};
 
@@ -153,6 +155,13 @@ impl InputFilter {
         timer_hz / f64::from(self.clocks())
     }
 
+    /// Clocks by which an edge behind this filter is later than one behind a filter of `clocks`: each passes when its level has
+    /// lasted, so times behind unlike filters are of unlike moments.
+    #[must_use]
+    pub const fn later_than(self, clocks: u16) -> i32 {
+        self.clocks() as i32 - clocks as i32
+    }
+
     /// Clocks by which two timers with this filter may see an edge apart, for [`EdgeRing::new`](crate::edge_ring::EdgeRing::new).
     #[must_use]
     pub const fn skew_clocks(self) -> u16 {
@@ -224,6 +233,13 @@ mod tests {
         }
         // All but the short ones, and one of the pairs that are equally long: 8·8 and none else.
         assert_eq!(seen, 0xfff8);
+    }
+
+    #[test]
+    fn an_edge_is_later_by_as_much_as_its_filter_is_longer() {
+        let lathe = InputFilter::longest(40e3, 84e6).unwrap();
+        assert_eq!(lathe.later_than(32), 224);
+        assert_eq!(InputFilter::shortest().later_than(32), -24);
     }
 
     #[test]

@@ -18,6 +18,7 @@ use super::learning::Learning;
 use super::memory::{Lent, MapPlaces};
 use crate::axis_control::{self, What};
 use crate::captures::CaptureReceiver;
+use crate::input_filter::InputsInForce;
 use crate::queues::LinkEnds;
 use crate::report::Report;
 use crate::safe_state::record::Record;
@@ -59,6 +60,8 @@ pub(super) struct Bench<F: NorFlash> {
     pub wants_restart: bool,
     /// Why the firmware runs anew.
     pub reset: Record,
+    /// What the board's inputs can follow; none of a board whose inputs follow everything.
+    pub inputs: Option<InputsInForce>,
 }
 
 impl<F: NorFlash> Bench<F> {
@@ -141,6 +144,13 @@ impl<F: NorFlash> Port for Bench<F> {
         self.scale = config.scale;
         self.next_ticket = self.next_ticket.wrapping_add(1);
         Ok(Passed::OnItsWay(ticket))
+    }
+
+    fn check(&self, settings: &Settings) -> Result<(), Refusal> {
+        match &self.inputs {
+            Some(inputs) => inputs.check(settings),
+            None => Ok(()),
+        }
     }
 
     fn serve(

@@ -226,6 +226,7 @@ impl<F: NorFlash> Parts<F> {
             next_ticket: 0,
             wants_restart: false,
             reset: Default::default(),
+            inputs: None,
         };
         Ok(place(Link {
             service: Service::new(self.identity, settings, config),

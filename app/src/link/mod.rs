@@ -29,6 +29,7 @@ use embedded_storage::nor_flash::NorFlash;
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::service::{Service, Ticket};
 
+use crate::input_filter::InputsInForce;
 use crate::report::Report;
 use crate::safe_state::record::Record as ResetRecord;
 use bench::Bench;
@@ -48,6 +49,11 @@ impl<F: NorFlash> Link<F> {
     /// Takes what a board found of the last reset; who asks for it is told.
     pub const fn set_reset(&mut self, reset: ResetRecord) {
         self.bench.reset = reset;
+    }
+
+    /// Takes what the board's inputs can follow: settings that they cannot are refused from now on, and no axis is enabled on such.
+    pub const fn set_inputs(&mut self, inputs: InputsInForce) {
+        self.bench.inputs = Some(inputs);
     }
 
     /// Takes the report of a tick.

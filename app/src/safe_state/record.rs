@@ -126,17 +126,11 @@ fn checksum_of(words: &[u32]) -> u32 {
 }
 
 fn body_of(reason: &Reason) -> [u32; BODY] {
-    let mut body = [0; BODY];
-    let mut put = |values: &mut dyn Iterator<Item = u32>| {
-        body.iter_mut()
-            .zip(values)
-            .for_each(|(word, value)| *word = value);
-    };
     match reason {
         Reason::Panic(Place { hash, line, file }) => {
             let (file, _) = file.as_chunks::<4>();
             let file = file.iter().map(|bytes| u32::from_le_bytes(*bytes));
-            put(&mut [*hash, *line].into_iter().chain(file));
+            body_with([*hash, *line].into_iter().chain(file))
         }
         Reason::HardFault(fault) => {
             let HardFault {
@@ -146,11 +140,19 @@ fn body_of(reason: &Reason) -> [u32; BODY] {
                 hfsr,
                 address,
             } = *fault;
-            put(&mut [pc, lr, cfsr, hfsr, address].into_iter());
+            body_with([pc, lr, cfsr, hfsr, address].into_iter())
         }
-        Reason::Watchdog | Reason::StackOverflow => {}
-        Reason::LateTicks { tick } => put(&mut [*tick].into_iter()),
+        Reason::Watchdog | Reason::StackOverflow => [0; BODY],
+        Reason::LateTicks { tick } => body_with([*tick].into_iter()),
     }
+}
+
+/// Values, and zeros behind them.
+fn body_with(values: impl Iterator<Item = u32>) -> [u32; BODY] {
+    let mut body = [0; BODY];
+    body.iter_mut()
+        .zip(values)
+        .for_each(|(word, value)| *word = value);
     body
 }
 

@@ -16,13 +16,24 @@ use embassy_stm32::pac::timer::vals::{CcmrInputCcs, FilterValue, Sms, Ti1s, Ts};
 
 use leadscrew::hal::Latch;
 use leadscrew_app::edge_ring::{Progress, Sample};
-use leadscrew_app::input_filter::InputFilter;
+use leadscrew_app::input_filter::{InputFilter, Inputs, LineLimits};
 
+use crate::clocks::TIMER_HZ;
 use crate::gpio;
 use crate::pins;
 
 /// Times that the ring holds: four ticks of 1 ms at a million edges a second.
 pub const RING: usize = 4096;
+/// What they can follow: the fastest encoder of this class, the receivers of docs/board.md without capacitors at their inputs,
+/// and the ring.
+pub const INPUTS: Inputs = Inputs {
+    limits: LineLimits {
+        encoder_hz: 300e3,
+        receiver_hz: 1e6,
+    },
+    timer_hz: TIMER_HZ as f64,
+    ring_words: RING,
+};
 /// Of DMA 1.
 const STREAM: usize = 2;
 /// That of TIM5_CH1 on this stream.

@@ -10,13 +10,17 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::timer::vals::FilterValue;
 use leadscrew::hal::Latch;
 use leadscrew_app::edge_ring::Clock16;
+use leadscrew_app::input_filter::InputFilter;
 
 use crate::clocks::{FAST_TIMER_HZ, TIMER_HZ};
 use crate::encoder::channel::{CH1, CH4};
 use crate::encoder::{self, DIRECT};
 
-/// 8 samples of 21 MHz: pulses below 0.4 µs are none.
+/// 8 samples, each of 8 clocks of TIM1: interference below 0.4 µs is no edge. What bounces longer is not waited out, which would
+/// make every stamp late by as much: the first edge is the one that counts, and debouncing is for whoever acts on it.
 const FILTER: FilterValue = FilterValue::FDTS_DIV8_N8;
+/// The same in clocks of TIM5.
+const FILTER_CLOCKS: u16 = (8 * 8 / (FAST_TIMER_HZ / TIMER_HZ)) as u16;
 
 /// An edge on its way from the latch interrupt to the tick; the first one since the tick looked.
 pub struct Stamp {
@@ -29,6 +33,8 @@ pub struct Stamp {
 pub static PROBE: Stamp = Stamp::new();
 /// The home switch was actuated.
 pub static HOME: Stamp = Stamp::new();
+/// What makes a stamp one of the encoder's edges: these come through a longer filter, later by as much.
+static SHIFT: AtomicU32 = AtomicU32::new(0);
 /// Phase of TIM1 against TIM5.
 static OFFSET: AtomicU32 = AtomicU32::new(0);
 
@@ -68,8 +74,10 @@ impl Stamp {
     }
 }
 
-/// Sets TIM1 up and starts it; TIM5 runs. Its interrupt has to be masked.
-pub fn start() {
+/// Sets TIM1 up and starts it; TIM5 runs, with `encoder` at its inputs. Its interrupt has to be masked.
+pub fn start(encoder: InputFilter) {
+    let shift = encoder.later_than(FILTER_CLOCKS);
+    SHIFT.store(shift.cast_unsigned(), Ordering::Relaxed);
     let timer = pac::TIM1;
     timer
         .psc()
@@ -115,11 +123,12 @@ fn TIM1_CC() {
     let count = encoder::count_now();
     let now = encoder::now();
     let clock = Clock16::new(OFFSET.load(Ordering::Relaxed) as u16, 0);
+    let shift = SHIFT.load(Ordering::Relaxed);
     for (channel, stamp) in [(CH1, &PROBE), (CH4, &HOME)] {
         if status.ccif(channel) {
             // Reading the latch clears its flag.
             let narrow = timer.ccr(channel).read().ccr();
-            let time = clock.extend16(narrow, now);
+            let time = clock.extend16(narrow, now).wrapping_add(shift);
             stamp.note(Latch { count, time });
         }
     }

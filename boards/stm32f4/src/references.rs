@@ -11,13 +11,15 @@ use embassy_stm32::pac::timer::vals::{Dir, FilterValue, Sms, Ts};
 use leadscrew::hal::{Capture, Latch};
 use leadscrew::units::Command;
 use leadscrew_app::edge_ring::Counter16;
+use leadscrew_app::input_filter::InputFilter;
 
+use crate::clocks::TIMER_HZ;
 use crate::encoder::channel::{CH1, CH2, CH3};
 use crate::encoder::{self, DIRECT};
 use crate::{gpio, pins};
 
-/// 8 samples of 84 MHz: pulses below 95 ns are none.
-const FILTER: FilterValue = FilterValue::FCK_INT_N8;
+/// Fastest channel of a second encoder, Hz; and steps that are high and low for 0.5 µs pass, too.
+const FASTEST_HZ: f64 = 300e3;
 /// Line of the external interrupt of the direction, and its port B in the multiplexer.
 const DIRECTION_LINE: usize = 7;
 const PORT_B: u8 = 1;
@@ -108,12 +110,21 @@ impl References {
     }
 }
 
+/// By the rule of the encoder's own inputs ([`leadscrew_app::input_filter`]): the longest that takes at most half of the shortest
+/// level, 32 clocks or 381 ns. It delays steps and counts by as much, all alike: no order between them changes, and a
+/// step comes that much later after its direction, which is not filtered.
+fn filter() -> FilterValue {
+    let filter = InputFilter::longest(FASTEST_HZ, f64::from(TIMER_HZ));
+    FilterValue::from_bits(filter.unwrap_or(InputFilter::shortest()).code())
+}
+
 fn start_steps() {
+    let filter = filter();
     let timer = pac::TIM4;
     timer.arr().write(|w| w.set_arr(u16::MAX));
     timer.ccmr_input(0).write(|w| {
         w.set_ccs(CH1, DIRECT);
-        w.set_icf(CH1, FILTER);
+        w.set_icf(CH1, filter);
     });
     timer.smcr().write(|w| w.set_ts(Ts::TI1FP1));
     timer.smcr().modify(|w| w.set_sms(Sms::EXT_CLOCK_MODE));
@@ -149,17 +160,18 @@ fn EXTI9_5() {
 }
 
 fn start_master() {
+    let filter = filter();
     let timer = pac::TIM3;
     timer.arr().write(|w| w.set_arr(u16::MAX));
     timer.ccmr_input(0).write(|w| {
         w.set_ccs(CH1, DIRECT);
         w.set_ccs(CH2, DIRECT);
-        w.set_icf(CH1, FILTER);
-        w.set_icf(CH2, FILTER);
+        w.set_icf(CH1, filter);
+        w.set_icf(CH2, filter);
     });
     timer.ccmr_input(1).write(|w| {
         w.set_ccs(CH3 - 2, DIRECT);
-        w.set_icf(CH3 - 2, FILTER);
+        w.set_icf(CH3 - 2, filter);
     });
     timer.smcr().write(|w| w.set_sms(Sms::ENCODER_MODE_3));
     timer.ccer().write(|w| w.set_cce(CH3, true));

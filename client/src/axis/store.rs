@@ -94,7 +94,7 @@ impl FaultPage {
 pub struct TickCounters {
     /// Ticks.
     pub ticks: u32,
-    /// Ticks whose inputs came late.
+    /// Ticks that did not run, or whose inputs came late.
     pub late: u32,
     /// Ticks that took too long.
     pub overlong: u32,

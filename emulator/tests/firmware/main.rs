@@ -6,6 +6,7 @@ mod boot;
 mod motion;
 mod safety;
 mod session;
+mod stack;
 mod store;
 #[path = "../../../host/tests/support/tuned.rs"]
 mod tuned;

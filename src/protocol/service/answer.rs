@@ -216,6 +216,7 @@ impl Inner {
         if self.needs_restart() {
             return Err(Refusal::RestartNeeded);
         }
+        port.check(&self.settings)?;
         self.edit = None;
         port.order(&Order::Enable(true))
     }

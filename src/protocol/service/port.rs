@@ -116,6 +116,15 @@ pub trait Port {
     /// A [`Refusal`]; the one before stays.
     fn reconfigure(&mut self, config: &AxisConfig) -> Result<Passed, Refusal>;
 
+    /// Whether the board can follow an axis with `settings`; asked before they are taken, and before the axis is enabled.
+    ///
+    /// # Errors
+    /// A [`Refusal`]; with [`Refusal::RestartNeeded`] they are taken, but the axis is not enabled before a restart.
+    fn check(&self, settings: &Settings) -> Result<(), Refusal> {
+        let _ = settings;
+        Ok(())
+    }
+
     /// Does what is not the axis's: store, work memory, scope, learning, counters. Who asks may do so, and the axis is off
     /// where that is asked for; `settings` are those in force. A reply other than an acknowledgement goes to `say`, of
     /// requests that only ask.

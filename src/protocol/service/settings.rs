@@ -81,6 +81,10 @@ impl Inner {
     /// Puts settings into force; other rates wait for a restart.
     fn put(&mut self, mut settings: Settings, port: &mut dyn Port) -> Result<Passed, Refusal> {
         let config = settings.validate().map_err(|_| Refusal::Inconsistent)?;
+        match port.check(&settings) {
+            Ok(()) | Err(Refusal::RestartNeeded) => {}
+            Err(refusal) => return Err(refusal),
+        }
         let mut passed = Passed::Taken;
         if Self::rates_of(&settings) == self.rates {
             passed = port.reconfigure(&config)?;

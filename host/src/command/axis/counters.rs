@@ -134,7 +134,7 @@ impl Report {
     fn to_text(&self) -> String {
         format!(
             "ticks            {} since it was switched on\n\
-             late             {} whose inputs came late, {} that took too long\n\
+             late             {} that did not run or whose inputs came late, {} that took too long\n\
              worst tick       start {}, end {} clocks of its timer after it was due\n\
              lost records     {}\n\
              indexes          {}, the last at count {}, {} d from the one before it\n\

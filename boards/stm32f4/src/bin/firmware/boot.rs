@@ -1,9 +1,9 @@
 //! From the flash to an axis, its link and its lines.
 
 use board_common::serve::ModbusLine;
-use board_stm32f4::clocks::{FAST_TIMER_HZ, TIMER_HZ};
+use board_stm32f4::clocks::FAST_TIMER_HZ;
 use board_stm32f4::converter::Output;
-use board_stm32f4::encoder::{self, RING};
+use board_stm32f4::encoder;
 use board_stm32f4::flash::{CAPACITY, Flash};
 use board_stm32f4::machine::Machine;
 use board_stm32f4::references::References;
@@ -19,8 +19,7 @@ use leadscrew::protocol::reply::{
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
 use leadscrew_app::axis_control::AxisControl;
-use leadscrew_app::edge_ring::hold;
-use leadscrew_app::input_filter::{InputFilter, line_hz};
+use leadscrew_app::input_filter::{InputFilter, InputsInForce};
 use leadscrew_app::link::{Boot, Link, Maps};
 use leadscrew_app::modbus::{Config, Modbus, Panel as _};
 use leadscrew_app::queues::Queues;
@@ -73,7 +72,8 @@ pub fn boot() -> Result<(Server, TickPeriod), &'static str> {
         defmt::error!("the flash holds no store that can be used: nothing can be saved");
     }
     let tick_hz = link.view().scale.tick_hz();
-    let machine = machine(&link.settings(), tick_hz);
+    let (machine, inputs) = machine(&link.settings());
+    link.set_inputs(inputs);
     let queue = memory::take_reports().ok_or("the reports' queue is taken")?;
     let reports = tick::wire(control, machine, output(), queue, tick_hz);
     let period = TickPeriod::nearest(FAST_TIMER_HZ, tick_hz).ok_or("no timer has that rate")?;
@@ -111,21 +111,18 @@ fn identity() -> Identity {
 
 /// Starts all inputs, with the filter that the axis at full command asks for.
 #[inline(never)]
-fn machine(settings: &Settings, tick_hz: f64) -> Machine {
-    let timer_hz = f64::from(TIMER_HZ);
-    let motion = &settings.axis.motion;
-    let lines = line_hz(motion.full_command_feed_mm_per_min, motion.counts_per_mm);
-    let filter = InputFilter::longest(lines, timer_hz).unwrap_or_else(|| {
-        defmt::error!("the encoder is faster than the inputs: edges are lost at full command");
-        InputFilter::shortest()
-    });
-    let held = hold(RING, tick_hz, 4.0 * lines, filter.passed_hz(timer_hz));
-    if held.is_err() {
-        defmt::error!("too many edges in a tick: raise tick_hz; no edge times until then");
+fn machine(settings: &Settings) -> (Machine, InputsInForce) {
+    let chosen = encoder::INPUTS.filter(settings);
+    if let Err(error) = &chosen {
+        // No axis is enabled then. Without a ring that holds everything no edge times are used.
+        defmt::error!("inputs: {}", defmt::Display2Format(error));
     }
+    let filter = chosen.unwrap_or(InputFilter::shortest());
     encoder::start(EDGES.address(), filter);
-    latches::start();
-    Machine::new(filter, held.is_ok(), References::start())
+    latches::start(filter);
+    let machine = Machine::new(filter, chosen.is_ok(), References::start());
+    let inputs = encoder::INPUTS;
+    (machine, InputsInForce { inputs, filter })
 }
 
 /// The lines, and all that thread mode works with.
