@@ -5,6 +5,7 @@
 //! step's beginning, if its enable relay is on. The edges of the step are then known, and come at their times.
 
 mod pins;
+mod probe;
 mod put_out;
 mod steps;
 mod wired;
@@ -20,6 +21,7 @@ use crate::CLOCK_HZ;
 use crate::converter::Ad5761r;
 use crate::emulator::Pin;
 use crate::quadrature_lines::{AXIS, Lines, MASTER};
+use probe::Probe;
 use put_out::BoardOutputs;
 pub use put_out::PutOut;
 use steps::Steps;
@@ -52,7 +54,7 @@ pub struct AxisMachine {
     levels: [Option<bool>; Pin::COUNT],
     forced: Option<Forced>,
     steps: Option<Steps>,
-    probe_at: Option<i32>,
+    probe: Probe,
     analog: u16,
     edges: u64,
 }
@@ -96,7 +98,7 @@ impl AxisMachine {
             levels: [None; Pin::COUNT],
             forced: None,
             steps: None,
-            probe_at: None,
+            probe: Probe::default(),
             analog: 0x800,
             edges: 0,
         };
@@ -181,7 +183,13 @@ impl AxisMachine {
 
     /// Lets the probe touch where the count comes to `count` or leaves it upward; `None` takes it away.
     pub fn put_probe(&mut self, count: Option<i32>) {
-        self.probe_at = count;
+        self.probe.at = count;
+    }
+
+    /// The clock at which the probe touched last.
+    #[must_use]
+    pub const fn touched_at(&self) -> Option<u64> {
+        self.probe.touched_at
     }
 
     /// Steps a second of the outer control; negative is backward.
@@ -240,7 +248,7 @@ impl AxisMachine {
                 self.lines.pass(forced.direction, clock, changes);
                 self.edges += 1;
                 forced.next += forced.clocks_per_edge;
-                touch(self.probe_at, self.lines.count(), clock, changes);
+                self.probe.follow(self.lines.count(), clock, changes);
             }
             return;
         }
@@ -248,7 +256,7 @@ impl AxisMachine {
             let clock = within_step(from, time);
             self.lines.pass(direction, clock, changes);
             self.edges += 1;
-            touch(self.probe_at, self.lines.count(), clock, changes);
+            self.probe.follow(self.lines.count(), clock, changes);
         }
     }
 
@@ -266,11 +274,4 @@ impl AxisMachine {
 fn within_step(from: u64, time: u32) -> u64 {
     let since = time.wrapping_sub(from as u32).cast_signed();
     from + since.clamp(0, STEP as i32 - 1).cast_unsigned() as u64
-}
-
-/// The probe follows the count.
-fn touch(probe_at: Option<i32>, count: i32, clock: u64, changes: &mut Vec<(u64, Pin, bool)>) {
-    if let Some(at) = probe_at {
-        changes.push((clock, wired::PROBE, count >= at));
-    }
 }
