@@ -207,6 +207,12 @@ signals! {
     /// Velocity of the second encoder.
     MasterVelocity = 22, "master_velocity", Narrow, DPerTick, Velocity::FRAC_NBITS,
         |axis| i64::from(axis.master().estimate().velocity.to_bits());
+    /// Illegal transitions of the encoder since start-up.
+    IllegalTransitions = 23, "illegal_transitions", Word, None, 0, |axis| i64::from(axis.capture_health().illegal);
+    /// Ticks since start-up in which edge times were lost.
+    OverrunTicks = 24, "overrun_ticks", Word, Tick, 0, |axis| i64::from(axis.capture_health().overrun_ticks);
+    /// Ticks since start-up in which the edge times do not explain the count: a reversal, or edges lost.
+    AmbiguousTicks = 25, "ambiguous_ticks", Word, Tick, 0, |axis| i64::from(axis.capture_health().ambiguous_ticks);
 }
 
 impl Signal {

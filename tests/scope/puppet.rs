@@ -1,6 +1,7 @@
 //! An axis that is pulled about by captures that no machine gives, and what it gave, written down by hand.
 
 use leadscrew::axis::{Axis, Inputs, Outputs};
+use leadscrew::capture::CaptureHealth;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::{Capture, Lines, Reference};
 use leadscrew::params::AxisParams;
@@ -18,6 +19,7 @@ pub struct Row {
     experiment: (i64, i32),
     withheld: i32,
     master: (i64, i32),
+    health: CaptureHealth,
 }
 
 impl Row {
@@ -33,6 +35,7 @@ impl Row {
                 axis.master().count(),
                 axis.master().estimate().velocity.to_bits(),
             ),
+            health: axis.capture_health(),
         }
     }
 
@@ -62,6 +65,9 @@ impl Row {
             "friction_command" => self.withheld.into(),
             "master_count" => self.master.0,
             "master_velocity" => self.master.1.into(),
+            "illegal_transitions" => self.health.illegal.into(),
+            "overrun_ticks" => self.health.overrun_ticks.into(),
+            "ambiguous_ticks" => self.health.ambiguous_ticks.into(),
             name => panic!("{name} is not known here: say what it is"),
         }
     }

@@ -26,6 +26,9 @@ const NUMBERS: [(u8, &str); 22] = [
     (20, "friction_command"),
     (21, "master_count"),
     (22, "master_velocity"),
+    (23, "illegal_transitions"),
+    (24, "overrun_ticks"),
+    (25, "ambiguous_ticks"),
 ];
 
 #[test]
@@ -43,5 +46,5 @@ fn numbers_and_names_stay_and_lead_back() {
     }
     assert_eq!(Signal::from_name("speed"), None);
     assert_eq!(Signal::from_number(0), None);
-    assert_eq!(Signal::from_number(23), None);
+    assert_eq!(Signal::from_number(26), None);
 }

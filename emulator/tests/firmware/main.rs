@@ -3,6 +3,7 @@
 //! It has to be built before: `cargo build -p board-stm32f4 --target thumbv7em-none-eabihf --profile firmware`.
 
 mod boot;
+mod capture;
 mod motion;
 mod safety;
 mod session;

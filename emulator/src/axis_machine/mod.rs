@@ -4,52 +4,32 @@
 //! The machine goes in steps of 1/[`STEP_HZ`]; in each the drive has the command that the converter puts out at the
 //! step's beginning, if its enable relay is on. The edges of the step are then known, and come at their times.
 
+mod pins;
+mod probe;
+mod put_out;
+mod steps;
+mod wired;
+
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
-use leadscrew::axis::Outputs;
 use leadscrew::hal::Encoder as _;
-use leadscrew::units::{Command, RangeError};
+use leadscrew::units::RangeError;
 use leadscrew_hal_mock::scenario::{Base, Scenario, World, workshop};
 
 use crate::CLOCK_HZ;
 use crate::converter::Ad5761r;
-use crate::emulator::{Pin, Surroundings};
+use crate::emulator::Pin;
 use crate::quadrature_lines::{AXIS, Lines, MASTER};
+use probe::Probe;
+use put_out::BoardOutputs;
+pub use put_out::PutOut;
+use steps::Steps;
 
 /// Steps of the machine a second.
 pub const STEP_HZ: f64 = 20_000.0;
 /// Clocks of a step.
 const STEP: u64 = CLOCK_HZ / STEP_HZ as u64;
-/// Volts of full command.
-const FULL_VOLTS: f64 = 10.0;
-/// Clocks that a step pulse is high, and that the direction is there before.
-const PULSE: u64 = 420;
-
-/// Pins of the board as the machine is wired to them.
-mod wired {
-    use super::Pin;
-
-    pub const CONVERTER_SYNC: Pin = Pin::a(4);
-    pub const CONVERTER_LOAD: Pin = Pin::c(4);
-    pub const CONVERTER_RESET: Pin = Pin::c(5);
-    pub const CONVERTER_ALERT: Pin = Pin::b(1);
-    pub const ENABLE: Pin = Pin::b(9);
-    pub const BRAKE: Pin = Pin::b(8);
-    pub const PROBE: Pin = Pin::a(8);
-    pub const HOME: Pin = Pin::a(11);
-    pub const STEP: Pin = Pin::b(6);
-    pub const DIRECTION: Pin = Pin::b(7);
-    /// Low is ready.
-    pub const DRIVE_READY: Pin = Pin::b(12);
-    pub const DRIVE_FAULT: Pin = Pin::b(13);
-    pub const ENCODER_LOST: Pin = Pin::b(14);
-    pub const MASTER_LOST: Pin = Pin::b(15);
-    pub const EMERGENCY_STOP: Pin = Pin::c(1);
-    pub const LIMIT_LOW: Pin = Pin::c(2);
-    pub const LIMIT_HIGH: Pin = Pin::c(3);
-}
-
 /// The machine, as tests hold on to it while the emulator runs.
 pub type MachineHandle = Arc<Mutex<AxisMachine>>;
 
@@ -61,34 +41,12 @@ struct Forced {
     next: f64,
 }
 
-/// Steps of an outer control.
-#[derive(Clone, Copy, Debug)]
-struct Steps {
-    clocks_per_step: f64,
-    next: f64,
-    count: i64,
-    forward: bool,
-}
-
-/// What was put out since it was asked last.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PutOut {
-    /// The drive was enabled at some time.
-    pub enabled: bool,
-    /// The brake was released at some time.
-    pub brake_released: bool,
-    /// Largest output of the converter to either side, V.
-    pub volts: f64,
-}
-
 /// The machine at the pins.
 pub struct AxisMachine {
     world: World,
     lines: Lines,
     master: Option<Lines>,
-    converter: Ad5761r,
-    enable: bool,
-    brake_released: bool,
+    outputs: BoardOutputs,
     /// When the machine steps next.
     next_step: u64,
     pending: VecDeque<(u64, Pin, bool)>,
@@ -96,14 +54,9 @@ pub struct AxisMachine {
     levels: [Option<bool>; Pin::COUNT],
     forced: Option<Forced>,
     steps: Option<Steps>,
-    probe_at: Option<i32>,
+    probe: Probe,
     analog: u16,
     edges: u64,
-    /// Since when the outputs are as they are.
-    changed_at: [u64; 2],
-    put_out: PutOut,
-    /// When the converter was given its last value.
-    converted_at: u64,
 }
 
 impl AxisMachine {
@@ -139,20 +92,15 @@ impl AxisMachine {
             world,
             lines,
             master,
-            converter: Ad5761r::default(),
-            enable: false,
-            brake_released: false,
+            outputs: BoardOutputs::default(),
             next_step: 0,
             pending: VecDeque::new(),
             levels: [None; Pin::COUNT],
             forced: None,
             steps: None,
-            probe_at: None,
+            probe: Probe::default(),
             analog: 0x800,
             edges: 0,
-            changed_at: [0; 2],
-            put_out: PutOut::default(),
-            converted_at: 0,
         };
         machine.announce();
         Ok(Arc::new(Mutex::new(machine)))
@@ -172,43 +120,42 @@ impl AxisMachine {
     /// The output converter.
     #[must_use]
     pub const fn converter(&self) -> &Ad5761r {
-        &self.converter
+        &self.outputs.converter
     }
 
     /// What the drive is told, as a share of full command.
     #[must_use]
     pub fn command(&self) -> f64 {
-        self.converter.volts() / FULL_VOLTS
+        self.outputs.command()
     }
 
     /// Levels of the relays of enable and brake.
     #[must_use]
     pub const fn relays(&self) -> (bool, bool) {
-        (self.enable, self.brake_released)
+        self.outputs.relays
     }
 
     /// The clocks at which the relays of enable and brake went to the levels that they have.
     #[must_use]
     pub const fn relays_changed_at(&self) -> [u64; 2] {
-        self.changed_at
+        self.outputs.relays_changed_at
     }
 
     /// True while nothing can move: drive not enabled, converter at zero, brake not released.
     #[must_use]
     pub fn is_safe(&self) -> bool {
-        // Half of the converter's last bit.
-        !self.enable && !self.brake_released && self.converter.volts().abs() < 2e-4
+        self.outputs.is_safe()
     }
 
     /// The clock at which the converter was given its last value.
     #[must_use]
     pub const fn converted_at(&self) -> u64 {
-        self.converted_at
+        self.outputs.converted_at
     }
 
     /// What was put out since this was asked last.
     pub fn take_put_out(&mut self) -> PutOut {
-        std::mem::take(&mut self.put_out)
+        self.outputs.take_seen()
     }
 
     /// The x4 count of the encoder's lines.
@@ -236,20 +183,20 @@ impl AxisMachine {
 
     /// Lets the probe touch where the count comes to `count` or leaves it upward; `None` takes it away.
     pub fn put_probe(&mut self, count: Option<i32>) {
-        self.probe_at = count;
+        self.probe.at = count;
+    }
+
+    /// The clock at which the probe touched last.
+    #[must_use]
+    pub const fn touched_at(&self) -> Option<u64> {
+        self.probe.touched_at
     }
 
     /// Steps a second of the outer control; negative is backward.
     pub fn step_at(&mut self, steps_per_s: f64) {
         let count = self.steps.map_or(0, |steps| steps.count);
-        let clocks_per_step = CLOCK_HZ as f64 / steps_per_s.abs();
-        self.steps = Some(Steps {
-            clocks_per_step,
-            next: self.next_step as f64 + clocks_per_step,
-            count,
-            forward: steps_per_s >= 0.0,
-        });
         let now = self.next_step;
+        self.steps = Some(Steps::new(steps_per_s, now, count));
         self.pending
             .push_back((now, wired::DIRECTION, steps_per_s >= 0.0));
     }
@@ -263,16 +210,6 @@ impl AxisMachine {
     /// The analog command, as a share of full scale.
     pub fn set_analog(&mut self, level: f64) {
         self.analog = (2048.0 + level * 2047.0).round().clamp(0.0, 4095.0) as u16;
-    }
-
-    /// What the drive is told, by the wires that it really has.
-    fn outputs(&self) -> Outputs {
-        Outputs {
-            command: Command::saturating_from_num(self.command()),
-            enabled: self.enable,
-            brake_released: self.brake_released,
-            ..Outputs::default()
-        }
     }
 
     fn announce(&mut self) {
@@ -289,12 +226,13 @@ impl AxisMachine {
     fn step(&mut self) {
         let from = self.next_step;
         self.next_step += STEP;
-        let outputs = self.outputs();
-        self.world.step(&outputs);
+        self.world.step(&self.outputs.to_drive());
         let mut changes = Vec::new();
         self.turn(from, &mut changes);
         self.turn_master(from, &mut changes);
-        self.give_steps(&mut changes);
+        if let Some(steps) = &mut self.steps {
+            steps.give(self.next_step, &mut changes);
+        }
         self.tell_levels(from + STEP / 2, &mut changes);
         self.pending.extend(changes);
         // Stable: what comes at the same clock stays in order. A pulse may reach into the next step.
@@ -310,7 +248,7 @@ impl AxisMachine {
                 self.lines.pass(forced.direction, clock, changes);
                 self.edges += 1;
                 forced.next += forced.clocks_per_edge;
-                touch(self.probe_at, self.lines.count(), clock, changes);
+                self.probe.follow(self.lines.count(), clock, changes);
             }
             return;
         }
@@ -318,7 +256,7 @@ impl AxisMachine {
             let clock = within_step(from, time);
             self.lines.pass(direction, clock, changes);
             self.edges += 1;
-            touch(self.probe_at, self.lines.count(), clock, changes);
+            self.probe.follow(self.lines.count(), clock, changes);
         }
     }
 
@@ -330,115 +268,10 @@ impl AxisMachine {
             lines.pass(direction, within_step(from, time), changes);
         }
     }
-
-    fn give_steps(&mut self, changes: &mut Vec<(u64, Pin, bool)>) {
-        let end = self.next_step as f64;
-        let Some(steps) = &mut self.steps else {
-            return;
-        };
-        while steps.next < end {
-            let clock = steps.next as u64;
-            changes.push((clock, wired::STEP, true));
-            changes.push((clock + PULSE, wired::STEP, false));
-            steps.count += if steps.forward { 1 } else { -1 };
-            steps.next += steps.clocks_per_step;
-        }
-    }
-
-    /// Levels that the machine knows from step to step only.
-    fn tell_levels(&mut self, clock: u64, changes: &mut Vec<(u64, Pin, bool)>) {
-        let lines = self.world.board.lines();
-        let home_at = self
-            .world
-            .inputs(self.enable)
-            .capture
-            .home
-            .map_or(clock, |latch| within_step(clock - clock % STEP, latch.time));
-        let levels = [
-            (wired::DRIVE_READY, !lines.drive_ready, clock),
-            (wired::DRIVE_FAULT, lines.drive_fault, clock),
-            (wired::ENCODER_LOST, lines.encoder_lost, clock),
-            (wired::MASTER_LOST, lines.master_lost, clock),
-            (wired::EMERGENCY_STOP, lines.emergency_stop, clock),
-            (wired::LIMIT_LOW, lines.limit_low, clock),
-            (wired::LIMIT_HIGH, lines.limit_high, clock),
-            (wired::HOME, lines.home, home_at),
-            (wired::CONVERTER_ALERT, true, clock),
-        ];
-        for (pin, level, at) in levels {
-            let known = &mut self.levels[pin.index()];
-            if *known != Some(level) {
-                *known = Some(level);
-                changes.push((at, pin, level));
-            }
-        }
-    }
 }
 
 /// The clock of a stamp of the step that began at `from`; noise may have put it before.
 fn within_step(from: u64, time: u32) -> u64 {
     let since = time.wrapping_sub(from as u32).cast_signed();
     from + since.clamp(0, STEP as i32 - 1).cast_unsigned() as u64
-}
-
-/// The probe follows the count.
-fn touch(probe_at: Option<i32>, count: i32, clock: u64, changes: &mut Vec<(u64, Pin, bool)>) {
-    if let Some(at) = probe_at {
-        changes.push((clock, wired::PROBE, count >= at));
-    }
-}
-
-impl Surroundings for AxisMachine {
-    fn next_change(&self) -> u64 {
-        self.pending
-            .front()
-            .map_or(self.next_step, |&(clock, ..)| clock.min(self.next_step))
-    }
-
-    fn advance(&mut self, clock: u64, changes: &mut Vec<(Pin, bool)>) {
-        while let Some(&(at, pin, level)) = self.pending.front()
-            && at <= clock
-        {
-            self.pending.pop_front();
-            changes.push((pin, level));
-        }
-        while self.next_step <= clock {
-            self.step();
-        }
-    }
-
-    fn output(&mut self, clock: u64, pin: Pin, level: bool) {
-        match pin {
-            wired::CONVERTER_SYNC => {
-                let before = self.converter.values();
-                self.converter.select(level);
-                if self.converter.values() != before {
-                    self.converted_at = clock;
-                }
-            }
-            wired::CONVERTER_LOAD => self.converter.hold(level),
-            wired::CONVERTER_RESET => self.converter.reset(level),
-            wired::ENABLE if level != self.enable => {
-                self.enable = level;
-                self.changed_at[0] = clock;
-            }
-            wired::BRAKE if level != self.brake_released => {
-                self.brake_released = level;
-                self.changed_at[1] = clock;
-            }
-            _ => {}
-        }
-        let seen = &mut self.put_out;
-        seen.enabled |= self.enable;
-        seen.brake_released |= self.brake_released;
-        seen.volts = seen.volts.max(self.converter.volts().abs());
-    }
-
-    fn transfer(&mut self, _clock: u64, byte: u8) -> u8 {
-        self.converter.transfer(byte)
-    }
-
-    fn analog(&self) -> u16 {
-        self.analog
-    }
 }
