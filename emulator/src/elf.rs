@@ -84,15 +84,13 @@ impl Elf {
         })
     }
 
-    /// Programs it into a flash.
+    /// Programs it into a flash, which is at zero, too, after a reset.
     ///
     /// # Errors
     /// It does not fit.
     pub fn program(&self, flash: &mut [u8]) -> Result<(), ElfError> {
         for (address, content) in &self.segments {
-            let from = address
-                .checked_sub(FLASH)
-                .ok_or(ElfError("a segment is not in flash"))? as usize;
+            let from = address.checked_sub(FLASH).unwrap_or(*address) as usize;
             flash
                 .get_mut(from..from.saturating_add(content.len()))
                 .ok_or(ElfError("a segment is not in flash"))?

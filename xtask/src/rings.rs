@@ -76,8 +76,11 @@ const LONG_RINGS: &[Ring] = &[
     },
 ];
 
-/// Tests of the host package that need QEMU, all of them marked `#[ignore]`.
-const IN_QEMU: &str = "axis_in_qemu";
+/// Tests of other packages that need QEMU, all of them marked `#[ignore]`.
+const IN_QEMU: &[(&str, &str)] = &[
+    ("leadscrew-host", "axis_in_qemu"),
+    ("leadscrew-emulator", "cpu"),
+];
 
 /// What a ring came to.
 struct Outcome {
@@ -240,20 +243,24 @@ impl Runner {
         self.in_qemu(|call| call)
     }
 
-    /// Those of the harness, and those of the command; one call of nextest has both.
+    /// Those of the harness, and those of other packages; one call of nextest has all.
     fn in_qemu(&self, prepare: impl Fn(Call) -> Call) -> Outcome {
         let harness = tests(prepare(self.call(Choice::Qemu)));
         if self.nextest {
             return harness;
         }
-        let call = cargo(["test", "--no-fail-fast", "--package", "leadscrew-host"]);
-        let call = call.words(&["--test", IN_QEMU, "--", "--ignored"]);
-        let command = tests(prepare(call));
         let mut sum = harness.tests.unwrap_or_default();
-        sum += command.tests.unwrap_or_default();
+        let mut result = harness.result;
+        for (package, binary) in IN_QEMU {
+            let call = cargo(["test", "--no-fail-fast", "--package", package]);
+            let call = call.words(&["--test", binary, "--", "--ignored"]);
+            let others = tests(prepare(call));
+            sum += others.tests.unwrap_or_default();
+            result = result.and(others.result);
+        }
         Outcome {
             tests: Some(sum),
-            result: harness.result.and(command.result),
+            result,
         }
     }
 
@@ -268,7 +275,10 @@ impl Runner {
     fn call(&self, choice: Choice) -> Call {
         if self.nextest {
             let call = cargo(["nextest", "run", "--no-fail-fast", "--no-tests", "pass"]);
-            let of_qemu = format!("(package({QEMU}) or binary({IN_QEMU}))");
+            let others = IN_QEMU
+                .iter()
+                .map(|(package, binary)| format!(" or (package({package}) and binary({binary}))"));
+            let of_qemu = format!("(package({QEMU}){})", others.collect::<String>());
             let filter = match choice {
                 Choice::Plain => return call.packages(HOST),
                 Choice::Qemu => of_qemu,

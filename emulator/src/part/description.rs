@@ -229,9 +229,23 @@ const OUTPUTS: &[(&str, &str)] = &[
     ("pc13", "up"),
 ];
 
-/// The whole description.
-pub fn description() -> String {
+/// RAM behind the part's own, which no part has.
+pub const MORE_RAM: (u32, u32) = (0x2002_0000, 0x003e_0000);
+
+/// The whole description; `more_ram` for programs of a board that has more.
+pub fn description(more_ram: bool) -> String {
     let mut text = format!("machine \"stm32f407\" {{{FIXED}");
+    if more_ram {
+        let (base, size) = MORE_RAM;
+        line(
+            &mut text,
+            format_args!("object more \"ram\" {{ size = {size} }}"),
+        );
+        line(
+            &mut text,
+            format_args!("map mem {base:#x} size {size} = more"),
+        );
+    }
     timers(&mut text);
     ports(&mut text);
     for (output, number) in INTERRUPTS {

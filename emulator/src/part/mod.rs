@@ -70,6 +70,25 @@ impl Part {
         flash: Vec<u8>,
         surroundings: impl Surroundings + 'static,
     ) -> Result<Self, EmulatorError> {
+        Self::made(flash, surroundings, false)
+    }
+
+    /// The same with 4 MB of RAM at 0x2000_0000, as the board in QEMU has: for programs that run on both.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn with_more_ram(
+        flash: Vec<u8>,
+        surroundings: impl Surroundings + 'static,
+    ) -> Result<Self, EmulatorError> {
+        Self::made(flash, surroundings, true)
+    }
+
+    fn made(
+        flash: Vec<u8>,
+        surroundings: impl Surroundings + 'static,
+        more_ram: bool,
+    ) -> Result<Self, EmulatorError> {
         let around: SharedSurroundings = Arc::new(Mutex::new(Box::new(surroundings)));
         let pins = Pins::new(around.clone());
         let (link, modbus) = (Timed::new(Usart::default()), Timed::new(Usart::default()));
@@ -88,7 +107,7 @@ impl Part {
                 &state,
                 &watchdog,
                 &cpu,
-                options,
+                (options, &description::description(more_ram)),
             )?,
             cpu,
             pins,
@@ -108,7 +127,7 @@ impl Part {
         state: &Arc<CoreState>,
         watchdog: &Arc<AtomicU64>,
         cpu: &Arc<Mutex<Option<Arc<Core>>>>,
-        mut options: BuildOptions,
+        (mut options, text): (BuildOptions, &str),
     ) -> Result<Machine, EmulatorError> {
         let mut registry = catalog::registry().map_err(|error| failed(&error))?;
         let classes = [
@@ -160,8 +179,7 @@ impl Part {
         bindings.replace(whole_reset::CLASS.name, move |_| {
             Ok(Arc::new(WholeReset::new(Arc::clone(&watchdog))))
         });
-        let text = description::description();
-        rsemu::machine::build("stm32f407", &text, &registry, &options)
+        rsemu::machine::build("stm32f407", text, &registry, &options)
             .map_err(|error| failed(&error))
     }
 
