@@ -27,6 +27,7 @@ const RULES: Rules<'_> = Rules {
     through: &[SIGNALS],
     reserved: &[],
     ends: &[],
+    families: &[],
     repeated: REPEATED,
 };
 /// The readers are constant functions without captures, chosen when the scope is set up. All such functions of the image are looked at.

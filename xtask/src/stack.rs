@@ -56,7 +56,9 @@ const THROUGH: &[Through<'_>] = &[
 ];
 /// What takes a reply, and what takes the bytes of a frame.
 const SAYING: &str = "leadscrew_app::link::Link<F>::";
-const SENDING: &str = "firmware::serve::";
+const SENDING: &str = "board_common::serve::Server<";
+/// What makes texts: a text within a text is made of plain ones.
+const FORMATTING: &str = "core::fmt::";
 
 /// Deepest of the boot. No handler is let in yet but that of the time.
 const BOOT: &[&str] = &["leadscrew_app::link::boot::Boot<"];
@@ -93,6 +95,12 @@ pub fn check(calls: &Calls, bin: &str) -> Result<()> {
         let faults = stack.faults.join("\n  ");
         return Err(format!("the stack of `{bin}` has no bound:\n  {faults}"));
     }
+    let most = booting.max(running);
+    if most > place {
+        return Err(format!(
+            "the stack of `{bin}` may take {most} bytes, and has {place}: make the frames above smaller"
+        ));
+    }
     Ok(())
 }
 
@@ -109,6 +117,7 @@ impl Stack<'_> {
             through: THROUGH,
             reserved: &[TASKS, PORT, SAYING],
             ends,
+            families: &[FORMATTING],
             repeated: REPEATED,
         };
         let tree = self.calls.reachable_from(root, rules)?;

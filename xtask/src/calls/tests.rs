@@ -26,6 +26,7 @@ const STRICT: Rules<'_> = Rules {
     through: &[],
     reserved: &[],
     ends: &[],
+    families: &[],
     repeated: &[],
 };
 
@@ -136,6 +137,16 @@ fn one_that_calls_itself_takes_its_stack_as_often_as_told() {
     };
     let found = tree(&planted("bl\t0x200 <work>"), rules);
     assert_eq!((found.faults.len(), found.stack), (0, 40 + 3 * 16));
+}
+
+#[test]
+fn a_family_takes_the_stack_of_all_its_members_twice() {
+    let rules = Rules {
+        families: &["work", "other"],
+        ..STRICT
+    };
+    let found = tree(&planted("bl\t0x500 <leaf>"), rules);
+    assert_eq!((found.faults.len(), found.stack), (0, 40 + 2 * 16 + 20));
 }
 
 #[test]

@@ -32,6 +32,8 @@ pub struct Rules<'a> {
     pub reserved: &'a [&'a str],
     /// Functions at which the walk ends.
     pub ends: &'a [&'a str],
+    /// Functions that call one another through pointers, by what their names have in common; each may be on the stack twice.
+    pub families: &'a [&'a str],
     /// Functions that call themselves, and how often at most.
     pub repeated: &'a [(&'a str, u32)],
 }
@@ -60,6 +62,7 @@ impl Calls {
             calls: self,
             rules,
             done: BTreeMap::new(),
+            of_families: BTreeMap::new(),
             way: Vec::new(),
             faults: Vec::new(),
         };
@@ -78,6 +81,8 @@ struct Walk<'c> {
     rules: Rules<'c>,
     /// The functions that are done with, by their addresses.
     done: BTreeMap<u32, Depth>,
+    /// Stack of the families that are done with.
+    of_families: BTreeMap<&'c str, u32>,
     way: Vec<u32>,
     faults: Vec<String>,
 }
@@ -117,6 +122,10 @@ impl<'c> Walk<'c> {
         if is(self.rules.ends, function) {
             return 0;
         }
+        let mut families = self.rules.families.iter();
+        if let Some(family) = families.find(|family| function.name.contains(**family)) {
+            return self.visit_family(family);
+        }
         if PANICS.iter().any(|panic| function.name.contains(panic)) {
             if !self.rules.is_strict {
                 return 0;
@@ -139,6 +148,29 @@ impl<'c> Walk<'c> {
         };
         self.done.insert(start, depth);
         depth.whole
+    }
+
+    /// Twice all members, and below them the deepest function that is none.
+    fn visit_family(&mut self, family: &'c str) -> u32 {
+        if let Some(stack) = self.of_families.get(family) {
+            return *stack;
+        }
+        // One that is come to from below it is the same that is being added up.
+        self.of_families.insert(family, 0);
+        let functions = &self.calls.functions;
+        let members = functions
+            .values()
+            .filter(|function| function.name.contains(family));
+        let (mut all, mut below) = (0, 0);
+        for member in members {
+            self.look_at(member);
+            all += 2 * member.stack;
+            for callee in member.calls.iter().chain(&member.jumps) {
+                below = below.max(self.visit(*callee));
+            }
+        }
+        self.of_families.insert(family, all + below);
+        all + below
     }
 
     /// Faults of the function itself.
