@@ -7,7 +7,12 @@ fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts"));
     let has_ccm = env::var_os("CARGO_FEATURE_STM32F446RE").is_none();
     let board = if has_ccm { "board.x" } else { "board-f446.x" };
-    for (script, name) in [(board, "board.x"), ("sections.x", "sections.x")] {
+    let scripts = [
+        (board, "board.x"),
+        ("sections.x", "sections.x"),
+        ("tick_only.x", "tick_only.x"),
+    ];
+    for (script, name) in scripts {
         fs::copy(script, out.join(name))
             .unwrap_or_else(|e| panic!("cannot copy {script} to {}: {e}", out.display()));
         println!("cargo:rerun-if-changed={script}");
@@ -17,6 +22,7 @@ fn main() {
     println!("cargo:rerun-if-changed=../../memory.x");
     // No page alignment: the image is flashed, not loaded by an operating system.
     println!("cargo:rustc-link-arg-bins=--nmagic");
-    println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
+    println!("cargo:rustc-link-arg-bin=firmware=-Tlink.x");
+    println!("cargo:rustc-link-arg-bin=firmware=-Tdefmt.x");
+    println!("cargo:rustc-link-arg-bin=tick_only=-Ttick_only.x");
 }

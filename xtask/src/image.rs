@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::Result;
 use crate::command::{cargo, program, root};
-use crate::packages::{PROOF, TARGET};
+use crate::packages::TARGET;
 
 /// The image of a program that was built in the profile of the firmware.
 pub fn path(bin: &str) -> PathBuf {
@@ -13,10 +13,11 @@ pub fn path(bin: &str) -> PathBuf {
     root().join(target).join(TARGET).join("firmware").join(bin)
 }
 
-/// Builds a program of the proofs' board in the profile of the firmware.
-pub fn build(bin: &str) -> Result<()> {
-    cargo(["build", "--quiet", "--package", PROOF, "--target", TARGET])
+/// Builds a program of a board in the profile of the firmware.
+pub fn build(package: &str, bin: &str, words: &[&str]) -> Result<()> {
+    cargo(["build", "--quiet", "--package", package, "--target", TARGET])
         .words(&["--profile", "firmware", "--bin", bin])
+        .words(words)
         .run()
 }
 

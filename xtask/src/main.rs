@@ -13,6 +13,7 @@ mod packages;
 mod rings;
 mod setup;
 mod size;
+mod stack;
 mod summary;
 
 use std::process::ExitCode;
@@ -24,7 +25,7 @@ usage: cargo xtask COMMAND
   qemu [WORD...]   run the axis in QEMU at 1000 and 2500 Hz; WORD goes to the guest
   bench [--bless]  count instructions in QEMU and compare with the golden table; --bless rewrites it
   size [--bless]   bytes of the firmware's image against the golden table; --bless rewrites it
-  no-panic         prove that no panic can be reached from the control tick
+  no-panic         prove that no panic can be reached from tick and latches, and that the stack suffices
   golden           write the tables under tests/golden anew, for review
   deny             check licences, sources and banned crates against deny.toml";
 

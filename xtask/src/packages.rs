@@ -32,5 +32,8 @@ const F446: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 /// The target of all boards so far.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// The board whose programs `sized` and `tick_only` stand for a board's firmware in sizes and proofs.
-pub const PROOF: &str = "board-mps2-an386";
+/// The board whose program `sized` is a firmware without a board's drivers, for its size.
+pub const SIZED_BOARD: &str = "board-mps2-an386";
+
+/// The board that is flashed.
+pub const AXIS_BOARD: &str = "board-stm32f4";

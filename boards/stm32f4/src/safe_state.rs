@@ -40,8 +40,8 @@ pub fn stop(reason: &str) -> ! {
     }
 }
 
-#[panic_handler]
-fn on_panic(info: &PanicInfo<'_>) -> ! {
+/// What the firmware's panic handler does. It is the program's own, as tests on the board have another.
+pub fn on_panic(info: &PanicInfo<'_>) -> ! {
     let place = info
         .location()
         .map_or(Place::new("", 0), |at| Place::new(at.file(), at.line()));

@@ -39,7 +39,8 @@ pub static READY: Ready = Ready::new();
 /// Keeps axis and store apart.
 pub static INTERLOCK: Interlock = Interlock::new();
 
-struct TickState {
+/// What the tick works with.
+pub struct TickState {
     runtime: Runtime<&'static mut AxisControl<Machine>>,
     machine: Machine,
     output: Output,
@@ -83,9 +84,14 @@ pub fn wire(
         period,
         last: None,
     };
+    adopt(state);
+    reports
+}
+
+/// Gives the interrupt, which has to be masked, its state.
+pub fn adopt(state: TickState) {
     // Masked, so nobody else has it.
     TICK.put(state);
-    reports
 }
 
 /// Sets the timer up and starts it.
@@ -128,6 +134,9 @@ fn SDIO() {
 impl TickState {
     fn run(&mut self) {
         let (sample, progress) = encoder::sample();
+        // `cargo xtask no-panic` has to find it.
+        #[cfg(feature = "planted-panic")]
+        assert!(sample.time != 0);
         let missed = self.missed(sample.time);
         self.machine.sample(sample, progress, missed);
         let Self {
@@ -175,7 +184,8 @@ impl TickState {
         if has_stalled || passed < 2 * self.period {
             return 0;
         }
-        let missed = (passed / self.period).saturating_sub(1);
-        u16::try_from(missed).unwrap_or(u16::MAX)
+        // No period is zero; the compiler does not know that, and a division by zero would be a panic in the tick.
+        let periods = passed.checked_div(self.period).unwrap_or(0);
+        u16::try_from(periods.saturating_sub(1)).unwrap_or(u16::MAX)
     }
 }

@@ -13,6 +13,8 @@ mod boot;
 mod factory;
 mod serve;
 
+use core::panic::PanicInfo;
+
 use board_stm32f4::{clocks, gpio, priorities, reset_record, safe_state, tick, watchdog};
 use embassy_executor::Spawner;
 use leadscrew_app::modbus::Panel as _;
@@ -53,4 +55,9 @@ fn start(reset: Record) -> Result<&'static mut Server, &'static str> {
     watchdog::shorten().map_err(|Stuck| STUCK)?;
     defmt::info!("running at {=f64} Hz", tick_hz);
     Ok(server)
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo<'_>) -> ! {
+    safe_state::on_panic(info)
 }
