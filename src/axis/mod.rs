@@ -56,13 +56,19 @@ pub struct Axis<'m> {
 }
 
 impl<'m> Axis<'m> {
-    /// An axis that is not enabled, without an encoder map.
+    /// An axis that is not enabled, without an encoder map. Solves for an observer's gains.
     #[must_use]
     pub fn new(config: AxisConfig) -> Self {
+        Self::with_gains(config, &config.estimators.gains())
+    }
+
+    /// The same with the [gains](crate::estimator::paths::Config::gains) that were solved for before.
+    #[must_use]
+    pub fn with_gains(config: AxisConfig, gains: &Gains) -> Self {
         Self {
             unwrapper: Unwrapper::new(),
             edges: EdgeReader::new(config.edges),
-            estimators: Estimators::new(&config.estimators),
+            estimators: Estimators::with_gains(&config.estimators, gains),
             supervisor: Supervisor::new(config.supervisor),
             sources: Sources::new(&config.limits, &config.sources),
             homing: Homing::new(config.homing),

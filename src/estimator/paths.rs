@@ -205,13 +205,12 @@ pub struct Estimators {
 }
 
 impl Estimators {
-    /// Estimators that wait for their first sample. Outside the tick: gains are solved for.
+    /// Estimators that wait for their first sample, with the [gains](Config::gains) solved for them.
     #[must_use]
-    pub fn new(config: &Config) -> Self {
-        let gains = config.gains();
+    pub fn with_gains(config: &Config, gains: &Gains) -> Self {
         Self {
-            first: Estimator::with_gains(&config.first, &gains),
-            second: (config.second.as_ref()).map(|second| Estimator::with_gains(second, &gains)),
+            first: Estimator::with_gains(&config.first, gains),
+            second: (config.second.as_ref()).map(|second| Estimator::with_gains(second, gains)),
             paths: config.paths,
             reads_edges: config.reads_edges(),
             is_display_alone: config.is_display_alone(),

@@ -31,6 +31,11 @@ const THROUGH: &[Through<'_>] = &[
         reason: "the executor polls tasks",
     },
     Through {
+        callers: &["=SDIO", "=TIM8_BRK_TIM12"],
+        callees: &["embassy_executor::raw::waker::"],
+        reason: "interrupts wake tasks",
+    },
+    Through {
         callers: &["leadscrew::protocol::service::settings::"],
         callees: &[RECONFIGURE],
         reason: "settings go to the axis",

@@ -8,6 +8,7 @@ use leadscrew::calibration::Work;
 use leadscrew::capture::Unwrapper;
 use leadscrew::compensation::table::{POINTS, ScrewPoint, ScrewTable, Stretch};
 use leadscrew::encoder_map::EncoderMap;
+use leadscrew::estimator::observer::Gains;
 use leadscrew::params::{AxisConfig, ParamError};
 use leadscrew::protocol::service::{Identity, Seen, Service};
 use leadscrew::settings::Settings;
@@ -121,9 +122,9 @@ impl<F: NorFlash, const CAPTURED: usize, const LOOKED_AT: usize> Boot<F, CAPTURE
             found.settings = factory;
         }
         let (tick, captures_out, ends, captures) = queues.split();
-        let control = make(&mut found.settings, |config| {
+        let control = make(&mut found.settings, |config, gains| {
             control(AxisControl::new(
-                Axis::new(*config),
+                Axis::with_gains(*config, gains),
                 tick,
                 captures_out,
                 interlock,
@@ -162,18 +163,20 @@ fn check(settings: &mut Settings) -> Result<(), ParamError> {
 #[inline(never)]
 fn make<'c, B>(
     settings: &mut Settings,
-    make: impl FnOnce(&AxisConfig) -> &'c mut AxisControl<B>,
+    make: impl FnOnce(&AxisConfig, &Gains) -> &'c mut AxisControl<B>,
 ) -> Result<&'c mut AxisControl<B>, ParamError> {
     let config = settings.validate()?;
-    Ok(on_a_frame_of_its_own(&config, make))
+    let gains = config.estimators.gains();
+    Ok(on_a_frame_of_its_own(&config, &gains, make))
 }
 
 #[inline(never)]
 fn on_a_frame_of_its_own<'c, B>(
     config: &AxisConfig,
-    make: impl FnOnce(&AxisConfig) -> &'c mut AxisControl<B>,
+    gains: &Gains,
+    make: impl FnOnce(&AxisConfig, &Gains) -> &'c mut AxisControl<B>,
 ) -> &'c mut AxisControl<B> {
-    make(config)
+    make(config, gains)
 }
 
 /// What a link is made of.

@@ -12,6 +12,7 @@ use crate::report::Report;
 
 impl<F: NorFlash> Bench<F> {
     /// Makes room for the record of an experiment that is about to begin.
+    #[inline(never)]
     pub fn begin_record(&mut self, record_ticks: u32) -> Result<(), Refusal> {
         if self.is_recording && self.is_running() {
             return Err(Refusal::ExperimentRuns);
@@ -78,6 +79,7 @@ impl<F: NorFlash> Bench<F> {
         }
     }
 
+    #[inline(never)]
     pub fn read_work(&self, offset: u32, say: &mut dyn FnMut(&Reply<'_>)) -> Result<(), Refusal> {
         let words = self.lent.words().ok_or(Refusal::WorkMemoryLent)?;
         let words = words.get(offset as usize..).unwrap_or_default();

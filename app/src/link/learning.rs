@@ -32,6 +32,7 @@ struct Learned {
 }
 
 impl<F: NorFlash> Bench<F> {
+    #[inline(never)]
     pub fn begin_learning(&mut self, edges: u32) -> Result<(), Refusal> {
         if self.is_recording {
             return Err(Refusal::WorkMemoryLent);
@@ -58,6 +59,7 @@ impl<F: NorFlash> Bench<F> {
         Ok(())
     }
 
+    #[inline(never)]
     pub fn begin_run(&mut self, revolutions: u32) -> Result<(), Refusal> {
         let Lent::Learner(learner) = &mut self.lent else {
             return Err(Refusal::NotLearning);
@@ -103,6 +105,7 @@ impl<F: NorFlash> Bench<F> {
     }
 
     /// Adds the run that is complete to those before.
+    #[inline(never)]
     pub fn end_run(&mut self) -> Result<(), Refusal> {
         let Lent::Learner(learner) = &mut self.lent else {
             return Err(Refusal::NotLearning);
@@ -146,6 +149,7 @@ impl<F: NorFlash> Bench<F> {
         }
     }
 
+    #[inline(never)]
     pub fn finish_learning(&mut self) -> Result<(), Refusal> {
         let Lent::Learner(learner) = &mut self.lent else {
             return Err(Refusal::NotLearning);
@@ -213,6 +217,7 @@ impl<F: NorFlash> Bench<F> {
         Ok(())
     }
 
+    #[inline(never)]
     pub fn end_learning(&mut self) -> Result<(), Refusal> {
         if let Some(learned) = self.learning.learned.take() {
             let _ = self.map_places.push(learned.image);

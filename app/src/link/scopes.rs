@@ -68,6 +68,7 @@ fn refusal_of(error: ScopeError) -> Refusal {
 }
 
 impl<F: NorFlash> Bench<F> {
+    #[inline(never)]
     pub fn arm_scope(&mut self, request: &Request<'_>) -> Result<(), Refusal> {
         let Request::ArmScope {
             signals,
@@ -109,6 +110,7 @@ impl<F: NorFlash> Bench<F> {
         }
     }
 
+    #[inline(never)]
     pub fn end_scope(&mut self) -> Result<(), Refusal> {
         if matches!(self.lent, Lent::ScopeInTick(_)) {
             return self.tell(What::EndScope);
@@ -176,6 +178,7 @@ impl<F: NorFlash> Bench<F> {
         });
     }
 
+    #[inline(never)]
     pub fn read_scope(&self, index: u32, say: &mut dyn FnMut(&Reply<'_>)) -> Result<(), Refusal> {
         let Lent::Scope(scope, _) = &self.lent else {
             return Err(Refusal::ScopeNotReady);
@@ -192,6 +195,7 @@ impl<F: NorFlash> Bench<F> {
         Ok(())
     }
 
+    #[inline(never)]
     pub fn begin_stream(&mut self, every: u16, numbers: &[u8]) -> Result<(), Refusal> {
         if every == 0 {
             self.batch = None;

@@ -54,6 +54,7 @@ impl<F: NorFlash> Bench<F> {
         self.tell(What::StoreCorrupt(false))
     }
 
+    #[inline(never)]
     pub fn save_map(&mut self) -> Result<(), Refusal> {
         let image = self.map.ok_or(Refusal::NotLearning)?;
         self.with_store(|store, _, permission| store.save_map(image, permission).map(|_| ()))
@@ -71,6 +72,7 @@ impl<F: NorFlash> Bench<F> {
         })
     }
 
+    #[inline(never)]
     pub fn read_stored(
         &mut self,
         kind: u8,
@@ -100,6 +102,7 @@ impl<F: NorFlash> Bench<F> {
         Ok(())
     }
 
+    #[inline(never)]
     pub fn save_bytes(&mut self, kind: u8, length: u32, crc: u32) -> Result<(), Refusal> {
         let kind = kind_of(kind)?;
         if kind == Kind::Parameters {
@@ -144,6 +147,7 @@ impl<F: NorFlash> Bench<F> {
         }
     }
 
+    #[inline(never)]
     pub fn erase(&mut self, number: u8) -> Result<(), Refusal> {
         let kind = match number {
             0 => None,
