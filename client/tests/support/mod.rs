@@ -52,6 +52,7 @@ impl Bench {
                 motions: 0,
                 enables: 0,
                 is_blocked: false,
+                followed: None,
             },
             service: Service::new(IDENTITY, &settings, &config),
             counts_per_mm: settings.axis.motion.counts_per_mm,
