@@ -19,6 +19,8 @@ const TASKS: &str = "embassy_executor::raw::TaskStorage<F>::poll";
 const PORT: &str =
     "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::";
 const RECONFIGURE: &str = "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::reconfigure";
+const CHECK: &str =
+    "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::check";
 /// Closures, whose names do not tell whose.
 const CLOSURES: &str = "core::ops::function::FnOnce::call_once";
 
@@ -37,8 +39,8 @@ const THROUGH: &[Through<'_>] = &[
     },
     Through {
         callers: &["leadscrew::protocol::service::settings::"],
-        callees: &[RECONFIGURE],
-        reason: "settings go to the axis",
+        callees: &[RECONFIGURE, CHECK],
+        reason: "settings go to the axis, if the inputs can follow it",
     },
     Through {
         callers: &[
