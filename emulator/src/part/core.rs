@@ -1,4 +1,5 @@
-//! The core: rsemu's, which sleeps for as long as it sleeps, and stands still while the flash is busy.
+//! The core: rsemu's, which sleeps for as long as it sleeps, stands still while the flash is busy, and is not interrupted within
+//! an IT block.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -13,11 +14,14 @@ use rsemu::core::wire::{Level, WireId, WireSource};
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::machine::{BindCtx, Instance};
 
+use super::gate::{Gate, Gated};
 use crate::emulator::lock;
 
 /// Status register of the flash, and its bit "busy".
 const FLASH_STATUS: u64 = 0x4002_3c0c;
 const BUSY: u64 = 1 << 16;
+/// Bits of the status register that tell of an IT block.
+const IT_STATE: u32 = 0x0600_fc00;
 const CLASS_NAME: &str = "axis.core";
 
 /// What the outside knows of the core.
@@ -38,6 +42,8 @@ pub struct Core {
     space: OnceLock<Arc<AddressSpace>>,
     reset: OnceLock<Arc<MachineReset>>,
     told: std::sync::Mutex<Option<WireSource>>,
+    gate: Arc<Gate>,
+    gated: std::sync::Mutex<Vec<Arc<Gated>>>,
 }
 
 impl Core {
@@ -49,6 +55,8 @@ impl Core {
             space: OnceLock::new(),
             reset: OnceLock::new(),
             told: std::sync::Mutex::new(None),
+            gate: Arc::default(),
+            gated: std::sync::Mutex::default(),
         })
     }
 
@@ -64,6 +72,19 @@ impl Core {
             .get()
             .and_then(|space| space.read(FLASH_STATUS, Width::U32, MemAttrs::DEBUG).ok());
         status.is_some_and(|status| status & BUSY != 0)
+    }
+
+    /// Lets interrupts in, at the end of an IT block if the core is in one; the cycles that this took.
+    fn open_gate(&self) -> u64 {
+        if !self.gate.is_asked() {
+            return 0;
+        }
+        let mut used = 0;
+        while self.cpu.xpsr() & IT_STATE != 0 {
+            used += self.cpu.run_budget(1);
+        }
+        self.gate.open();
+        used
     }
 
     fn run_awake(&self, ticks: u64) -> u64 {
@@ -107,7 +128,16 @@ impl Device for Core {
     }
 
     fn sink(&self, port: &str, sources: &[WireId]) -> Option<SinkPin> {
-        self.cpu.sink(port, sources)
+        let SinkPin { sink, line } = self.cpu.sink(port, sources)?;
+        if !port.starts_with("irq") {
+            return Some(SinkPin { sink, line });
+        }
+        let sink = Arc::new(Gated {
+            sink,
+            gate: Arc::clone(&self.gate),
+        });
+        lock(&self.gated).push(Arc::clone(&sink));
+        Some(SinkPin { sink, line })
     }
 
     fn connect(&self, _port: &str, source: WireSource) -> Result<()> {
@@ -131,16 +161,18 @@ impl Device for Core {
         if self.state.stands.load(Ordering::Relaxed) || self.is_starved() {
             return Consumed::new(budget.ticks);
         }
+        let opened = self.open_gate().min(budget.ticks);
+        let ticks = budget.ticks - opened;
         if self.cpu.is_asleep() {
             // One cycle, in which it sees whether something woke it: interrupts come between two rounds.
-            let used = self.cpu.run_budget(1);
+            let used = self.cpu.run_budget(1.min(ticks));
             if self.cpu.is_asleep() {
                 return Consumed::new(budget.ticks);
             }
             // The rest at once: a core that consumed less would hold all timers of its crystal back.
-            return Consumed::new(used + self.run_awake(budget.ticks - used));
+            return Consumed::new(opened + used + self.run_awake(ticks - used));
         }
-        Consumed::new(self.run_awake(budget.ticks))
+        Consumed::new(opened + self.run_awake(ticks))
     }
 }
 

@@ -7,6 +7,7 @@
 mod adc;
 mod core;
 mod description;
+mod gate;
 mod peripheral;
 mod pins;
 mod registers;

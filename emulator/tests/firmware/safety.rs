@@ -1,6 +1,6 @@
 //! What becomes of an axis in motion whose firmware fails.
 
-use leadscrew_client::Axis;
+use leadscrew_client::{Axis, LastReset};
 use leadscrew_emulator::Emulator as _;
 
 use crate::motion::set_up;
@@ -12,6 +12,12 @@ const TICK_TIMER: u32 = 0x4001_0400;
 const TICK: u16 = 60;
 /// Where the tests put what a panic points to: in the memory of the stack, at its far end.
 const LOCATION: u32 = 0x1000_0100;
+/// Where there is no memory.
+const NOWHERE: u32 = 0x6000_0000;
+/// Reasons of a reset.
+const PANIC: u8 = 1;
+const HARD_FAULT: u8 = 2;
+const WATCHDOG: u8 = 3;
 /// Longest time from a failure to outputs that are safe: the watchdog's at its slowest, and a tick.
 const LONGEST_MS: u64 = 22;
 
@@ -28,8 +34,8 @@ fn moving() -> (Board, Axis) {
     (board, tool)
 }
 
-/// The outputs are safe soon, the part starts anew once, and the axis can be used again.
-fn is_safe_and_comes_back(board: &Board, within_ms: u64) {
+/// The outputs are safe soon, the part starts anew once, the axis can be used again and tells why.
+fn is_safe_and_comes_back(board: &Board, within_ms: u64) -> LastReset {
     board.run_ms(within_ms);
     assert!(board.machine(|machine| machine.is_safe()));
     board.machine(|machine| machine.take_put_out());
@@ -39,6 +45,9 @@ fn is_safe_and_comes_back(board: &Board, within_ms: u64) {
     assert!(!put_out.enabled && !put_out.brake_released, "{put_out:?}");
     let mut tool = board.tool();
     assert!(!tool.status().unwrap().is_enabled);
+    let reset = tool.last_reset().unwrap();
+    assert_eq!(reset.resets, 1, "{reset:?}");
+    reset
 }
 
 /// Lets time pass until the core handles the tick.
@@ -57,7 +66,8 @@ fn into_the_tick(board: &Board) {
 fn the_watchdog_ends_a_tick_that_does_not_come() {
     let (board, _tool) = moving();
     board.with(|axis| axis.part().poke(TICK_TIMER, 0));
-    is_safe_and_comes_back(&board, LONGEST_MS);
+    let reset = is_safe_and_comes_back(&board, LONGEST_MS);
+    assert_eq!(reset.reason, WATCHDOG, "{reset:?}");
 }
 
 #[test]
@@ -81,7 +91,8 @@ fn the_watchdog_ends_a_tick_that_hangs() {
         LOCATION
     });
     board.with(|axis| axis.part().jump(address, 0));
-    is_safe_and_comes_back(&board, LONGEST_MS);
+    let reset = is_safe_and_comes_back(&board, LONGEST_MS);
+    assert_eq!(reset.reason, WATCHDOG, "{reset:?}");
 }
 
 #[test]
@@ -92,20 +103,28 @@ fn a_panic_is_safe_at_once() {
         .with(|axis| axis.elf().symbol("unwrap_failed"))
         .expect("a program that can panic");
     board.with(|axis| {
-        // File, its length, line, column.
-        for (place, word) in [0x0801_0000, 4, 1, 1].into_iter().enumerate() {
-            axis.part().poke(LOCATION + 4 * place as u32, word);
+        // File, its length with the zero at its end, line, column; then the file's name: "t.rs".
+        let words = [LOCATION + 16, 5, 4711, 1, 0x7372_2e74, 0];
+        for (place, word) in (0_u32..).zip(words) {
+            axis.part().poke(LOCATION + 4 * place, word);
         }
         axis.part().jump(address, LOCATION);
     });
-    is_safe_and_comes_back(&board, 1);
+    let reset = is_safe_and_comes_back(&board, 1);
+    assert_eq!((reset.reason, reset.place), (PANIC, 4711), "{reset:?}");
+    assert_eq!(reset.file, "t.rs");
 }
 
 #[test]
 #[ignore = "the image does not boot yet: its stack is larger than its memory"]
 fn a_hard_fault_is_safe_at_once() {
     let (board, _tool) = moving();
-    // There is nothing there.
-    board.with(|axis| axis.part().jump(0x6000_0000, 0));
-    is_safe_and_comes_back(&board, 1);
+    board.with(|axis| axis.part().jump(NOWHERE, 0));
+    let reset = is_safe_and_comes_back(&board, 1);
+    assert_eq!(
+        (reset.reason, reset.place),
+        (HARD_FAULT, NOWHERE),
+        "{reset:?}"
+    );
+    assert_ne!(reset.status[0], 0, "{reset:?}");
 }
