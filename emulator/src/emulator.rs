@@ -158,6 +158,13 @@ pub trait Emulator {
     /// Number of the exception that is handled, 0 for none.
     fn exception(&self) -> u16;
 
+    /// Counts the instructions of every call of the function, or of the handler of an exception, at that address from now
+    /// on, which is slow; `None` ends it. What interrupts a call is not counted.
+    fn count_calls(&mut self, function: Option<u32>);
+
+    /// Instructions of each call that returned since this was asked last; they are not cycles.
+    fn calls(&mut self) -> Vec<u32>;
+
     /// Sends bytes to the part, one after the other at its baud rate.
     fn send(&mut self, port: Serial, bytes: &[u8]);
 

@@ -47,6 +47,7 @@ pub struct References {
     master: Counter16,
     master_count: u32,
     master_at: u32,
+    master_edge_at: Option<u32>,
     master_index: Option<Latch>,
     analog: Command,
 }
@@ -63,6 +64,7 @@ impl References {
             master: Counter16::new(0),
             master_count: 0,
             master_at: encoder::now(),
+            master_edge_at: None,
             master_index: None,
             analog: Command::ZERO,
         }
@@ -73,8 +75,10 @@ impl References {
         // The index first: one that comes meanwhile is not older than the count.
         let index = pac::TIM3.sr().read().ccif(CH3);
         let latched = pac::TIM3.ccr(CH3).read().ccr();
+        let (count, at) = (self.master_count, self.master_at);
         self.master_count = self.master.update(pac::TIM3.cnt().read().cnt());
         self.master_at = encoder::now();
+        self.master_edge_at = self.newest_edge(count, at);
         self.master_index = index.then(|| Latch {
             count: self.master.at(latched),
             // Only the count is latched; nobody asks for a finer time of a spindle's index.
@@ -82,6 +86,15 @@ impl References {
         });
         self.step_count = self.steps.update(pac::TIM4.cnt().read().cnt());
         self.analog = analog();
+    }
+
+    /// When the newest edge of the second encoder came, since it was at `count` at time `at`. Nothing stamps it: it is put half
+    /// an edge's period before the count was read, where it is on average.
+    fn newest_edge(&self, count: u32, at: u32) -> Option<u32> {
+        let passed = self.master_count.wrapping_sub(count).cast_signed();
+        let period = self.master_at.wrapping_sub(at);
+        let age = period.checked_div(passed.unsigned_abs().wrapping_mul(2))?;
+        Some(self.master_at.wrapping_sub(age))
     }
 
     /// The wrapping count of steps.
@@ -94,7 +107,7 @@ impl References {
         Capture {
             count: self.master_count,
             sampled_at: self.master_at,
-            last_edge_at: None,
+            last_edge_at: self.master_edge_at,
             edges: [&[], &[]],
             illegal: 0,
             overrun: false,

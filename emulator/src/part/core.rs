@@ -2,7 +2,7 @@
 //! an IT block.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use rsemu::core::device::{Device, DeviceClass, MachineReset, RealizeCtx, ResetKind, SinkPin};
 use rsemu::core::error::Result;
@@ -14,6 +14,7 @@ use rsemu::core::wire::{Level, WireId, WireSource};
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::machine::{BindCtx, Instance};
 
+use super::calls::{Calls, Place};
 use super::gate::{Gate, Gated};
 use crate::emulator::lock;
 
@@ -31,6 +32,8 @@ pub struct CoreState {
     pub awake: AtomicU64,
     /// The core asked for a reset of the part.
     pub asked: AtomicU64,
+    /// Calls to count.
+    pub calls: Mutex<Option<Calls>>,
     stands: AtomicBool,
 }
 
@@ -41,9 +44,12 @@ pub struct Core {
     state: Arc<CoreState>,
     space: OnceLock<Arc<AddressSpace>>,
     reset: OnceLock<Arc<MachineReset>>,
-    told: std::sync::Mutex<Option<WireSource>>,
+    told: Mutex<Option<WireSource>>,
+    cursor: OnceLock<TickCursor>,
+    /// Ticks of the last budget that were overrun while calls are counted.
+    owed: AtomicU64,
     gate: Arc<Gate>,
-    gated: std::sync::Mutex<Vec<Arc<Gated>>>,
+    gated: Mutex<Vec<Arc<Gated>>>,
 }
 
 impl Core {
@@ -54,9 +60,11 @@ impl Core {
             state,
             space: OnceLock::new(),
             reset: OnceLock::new(),
-            told: std::sync::Mutex::new(None),
+            told: Mutex::new(None),
+            cursor: OnceLock::new(),
+            owed: AtomicU64::new(0),
             gate: Arc::default(),
-            gated: std::sync::Mutex::default(),
+            gated: Mutex::default(),
         })
     }
 
@@ -89,11 +97,42 @@ impl Core {
 
     fn run_awake(&self, ticks: u64) -> u64 {
         let before = self.cpu.cycles();
-        let used = self.cpu.run_budget(ticks);
+        let used = match &mut *lock(&self.state.calls) {
+            Some(calls) => self.run_counted(ticks, calls),
+            None => self.cpu.run_budget(ticks),
+        };
         let awake = self.cpu.cycles() - before;
         self.state.awake.fetch_add(awake, Ordering::Relaxed);
         self.heed_reset_request();
         used
+    }
+
+    /// As [`ArmV7m::run_budget`], which cannot be had in steps: devices have to know at which of its instructions they are asked.
+    fn run_counted(&self, ticks: u64, calls: &mut Calls) -> u64 {
+        let mut used = self.owed.swap(0, Ordering::Relaxed);
+        while used < ticks {
+            if let Some(cursor) = self.cursor.get() {
+                cursor.set(cursor.anchor().wrapping_add(used));
+            }
+            let before = self.place();
+            let step = self.cpu.step();
+            if step == 0 {
+                return used;
+            }
+            calls.step(before, self.place());
+            used += step;
+        }
+        self.owed.store(used - ticks, Ordering::Relaxed);
+        ticks
+    }
+
+    fn place(&self) -> Place {
+        Place {
+            pc: self.cpu.pc(),
+            link: self.cpu.reg(14),
+            exception: self.cpu.current_exception().0,
+            priority: self.cpu.execution_priority(),
+        }
     }
 
     /// The program asked for a reset: of the whole part, not of the core alone.
@@ -124,6 +163,7 @@ impl Device for Core {
     }
 
     fn attach_cursor(&self, cursor: TickCursor) {
+        let _ = self.cursor.set(cursor.clone());
         Device::attach_cursor(&self.cpu, cursor);
     }
 

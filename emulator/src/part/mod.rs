@@ -5,6 +5,7 @@
 //! stands still while the flash erases or programs, as the part does and rsemu's does not.
 
 mod adc;
+mod calls;
 mod core;
 mod description;
 mod gate;
@@ -26,6 +27,7 @@ use rsemu::core::value::Width;
 use rsemu::machine::{BuildOptions, Machine, catalog};
 
 use self::adc::Adc;
+use self::calls::Calls;
 use self::core::{Core, CoreState};
 use self::peripheral::Peripheral;
 use self::pins::{Pins, SharedSurroundings};
@@ -297,6 +299,15 @@ impl Emulator for Part {
     fn exception(&self) -> u16 {
         self.with_core(|core| core.cpu().current_exception().0)
             .unwrap_or_default()
+    }
+
+    fn count_calls(&mut self, function: Option<u32>) {
+        *lock(&self.state.calls) = function.map(Calls::of);
+    }
+
+    fn calls(&mut self) -> Vec<u32> {
+        let mut calls = lock(&self.state.calls);
+        calls.as_mut().map(Calls::take).unwrap_or_default()
     }
 
     fn send(&mut self, port: Serial, bytes: &[u8]) {

@@ -4,7 +4,9 @@
 
 mod boot;
 mod capture;
+mod inputs;
 mod motion;
+mod references;
 mod safety;
 mod session;
 mod stack;

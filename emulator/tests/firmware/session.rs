@@ -42,6 +42,11 @@ impl Board {
     /// A board with what is stored in its flash, just switched on, and the machine at its beginning.
     pub fn with_flash(flash: Vec<u8>) -> Self {
         let machine = AxisMachine::workshop(Base::Full, 1).expect("the workshop's machine");
+        Self::at(machine, flash)
+    }
+
+    /// A board at a machine.
+    pub fn at(machine: MachineHandle, flash: Vec<u8>) -> Self {
         let elf = firmware().unwrap_or_else(|error| panic!("{error}"));
         let axis = EmulatedAxis::with_flash(elf, flash, machine).expect("the image runs");
         Self {
