@@ -24,5 +24,12 @@ fn main() {
     println!("cargo:rustc-link-arg-bins=--nmagic");
     println!("cargo:rustc-link-arg-bin=firmware=-Tlink.x");
     println!("cargo:rustc-link-arg-bin=firmware=-Tdefmt.x");
+    // Tests on the board, by embedded-test.
+    println!("cargo:rustc-link-arg-tests=--nmagic");
+    println!("cargo:rustc-link-arg-tests=-Tlink.x");
+    println!("cargo:rustc-link-arg-tests=-Tdefmt.x");
+    println!("cargo:rustc-link-arg-tests=-Tembedded-test.x");
+    // Its macro asks for it.
+    println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     println!("cargo:rustc-link-arg-bin=tick_only=-Ttick_only.x");
 }

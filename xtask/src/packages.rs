@@ -21,11 +21,13 @@ pub const QEMU: &str = "leadscrew-qemu";
 /// Board crates with the target of each, and the words that choose its chip; one cargo call a line.
 pub const BOARDS: &[(&str, &str, &[&str])] = &[
     ("board-mps2-an386", TARGET, &[]),
-    ("board-stm32f4", TARGET, &[]),
-    ("board-stm32f4", TARGET, F405),
-    ("board-stm32f4", TARGET, F446),
+    (AXIS_BOARD, TARGET, F407),
+    (AXIS_BOARD, TARGET, F405),
+    (AXIS_BOARD, TARGET, F446),
 ];
 
+/// The chip by default, and the program of the proofs.
+const F407: &[&str] = &["--features", "tick-only"];
 const F405: &[&str] = &["--no-default-features", "--features", "stm32f405rg"];
 const F446: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 
@@ -37,3 +39,31 @@ pub const SIZED_BOARD: &str = "board-mps2-an386";
 
 /// The board that is flashed.
 pub const AXIS_BOARD: &str = "board-stm32f4";
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use crate::command::root;
+
+    /// Among them that every `unsafe` block tells its reason.
+    #[test]
+    fn all_packages_keep_to_the_lints_of_the_workspace() {
+        let text = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = text.parse().unwrap();
+        let lints = &manifest["workspace"]["lints"]["clippy"];
+        assert_eq!(lints["undocumented_unsafe_blocks"].as_str(), Some("deny"));
+        let members = manifest["workspace"]["members"].as_array().unwrap();
+        assert!(members.len() > 5);
+        for member in members {
+            let member = member.as_str().unwrap();
+            let path = root().join(member).join("Cargo.toml");
+            let text = fs::read_to_string(path).unwrap();
+            let manifest: toml::Table = text.parse().unwrap();
+            let lints = manifest
+                .get("lints")
+                .and_then(|lints| lints.get("workspace"));
+            assert_eq!(lints.and_then(toml::Value::as_bool), Some(true), "{member}");
+        }
+    }
+}

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use crate::command::{Call, cargo};
-use crate::packages::{BOARDS, HOST, QEMU};
+use crate::packages::{AXIS_BOARD, BOARDS, HOST, QEMU, TARGET};
 use crate::summary::Tests;
 use crate::{Result, bench, deny, no_panic, setup, size};
 
@@ -33,6 +33,10 @@ const RINGS: &[Ring] = &[
     Ring {
         name: "clippy boards",
         work: |_| clippy_boards().into(),
+    },
+    Ring {
+        name: "tests on board",
+        work: |_| tests_on_board().into(),
     },
     Ring {
         name: "host tests",
@@ -179,11 +183,26 @@ fn clippy_host() -> Result<()> {
 
 fn clippy_boards() -> Result<()> {
     BOARDS.iter().try_for_each(|(board, target, chip)| {
-        cargo(["clippy", "--package", board, "--target", target])
+        cargo(["clippy", "--all-targets", "--package", board])
+            .words(&["--target", target])
             .words(chip)
             .words(&["--", "-D", "warnings"])
             .run()
     })
+}
+
+/// They run on hardware alone; here they are linked.
+fn tests_on_board() -> Result<()> {
+    cargo([
+        "test",
+        "--no-run",
+        "--package",
+        AXIS_BOARD,
+        "--target",
+        TARGET,
+    ])
+    .words(&["--profile", "firmware", "--test", "axis_board"])
+    .run()
 }
 
 fn documentation() -> Result<()> {
