@@ -5,15 +5,8 @@ use std::{env, fs};
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts"));
-    let has_ccm = env::var_os("CARGO_FEATURE_STM32F446RE").is_none();
-    let board = if has_ccm { "board.x" } else { "board-f446.x" };
-    let scripts = [
-        (board, "board.x"),
-        ("sections.x", "sections.x"),
-        ("tick_only.x", "tick_only.x"),
-    ];
-    for (script, name) in scripts {
-        fs::copy(script, out.join(name))
+    for script in ["board.x", "tick_only.x"] {
+        fs::copy(script, out.join(script))
             .unwrap_or_else(|e| panic!("cannot copy {script} to {}: {e}", out.display()));
         println!("cargo:rerun-if-changed={script}");
     }

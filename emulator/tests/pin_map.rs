@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The chips that the board is built for.
-const CHIPS: [&str; 3] = ["stm32f407vg", "stm32f405rg", "stm32f446re"];
+const CHIPS: [&str; 2] = ["stm32f407vg", "stm32f405rg"];
 
 /// What a pin is used for.
 struct Use {

@@ -23,13 +23,15 @@ pub const BOARDS: &[(&str, &str, &[&str])] = &[
     ("board-mps2-an386", TARGET, &[]),
     (AXIS_BOARD, TARGET, F407),
     (AXIS_BOARD, TARGET, F405),
-    (AXIS_BOARD, TARGET, F446),
 ];
+
+/// Chips of the board that is flashed, by name, with the words that choose each: one cargo call a chip.
+/// The last one's image is the one that the emulated part runs.
+pub const CHIPS: &[(&str, &[&str])] = &[("stm32f405rg", F405), ("stm32f407vg", &[])];
 
 /// The chip by default, and the program of the proofs.
 const F407: &[&str] = &["--features", "tick-only"];
 const F405: &[&str] = &["--no-default-features", "--features", "stm32f405rg"];
-const F446: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 
 /// The target of all boards so far.
 pub const TARGET: &str = "thumbv7em-none-eabihf";

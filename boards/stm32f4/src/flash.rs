@@ -1,7 +1,7 @@
 //! The flash of the store: six pieces of 16 KiB, each a sector or the beginning of one.
 //!
 //! ```text
-//! sector     1      2      3     4 ... 8     9        10        11     (F446: 1 2 3, 4 5, 6 7)
+//! sector     1      2      3     4 ... 8     9        10        11
 //! size      16     16     16                128       128       128 KiB
 //! store   [log]  [log]  [   ]   program    [   ]····  [   ]····  [   ]····
 //! ```
@@ -36,7 +36,6 @@ const fn sector(number: u8, address: usize) -> Sector {
     Sector { number, address }
 }
 
-#[cfg(not(feature = "stm32f446re"))]
 const SECTORS: [Sector; 6] = [
     sector(1, 0x0800_4000),
     sector(2, 0x0800_8000),
@@ -44,14 +43,6 @@ const SECTORS: [Sector; 6] = [
     sector(9, 0x080a_0000),
     sector(10, 0x080c_0000),
     sector(11, 0x080e_0000),
-];
-#[cfg(feature = "stm32f446re")]
-const SECTORS: [Sector; 5] = [
-    sector(1, 0x0800_4000),
-    sector(2, 0x0800_8000),
-    sector(3, 0x0800_c000),
-    sector(6, 0x0804_0000),
-    sector(7, 0x0806_0000),
 ];
 
 /// Bytes of the store.

@@ -1,4 +1,4 @@
-//! The axis board: an STM32F405, F407 or F446 with its encoder, converter and lines. `docs/board.md` has the wiring.
+//! The axis board: an STM32F405 or F407 with its encoder, converter and lines. `docs/board.md` has the wiring.
 //!
 //! ```text
 //! clocks, pins, gpio                     what the board is

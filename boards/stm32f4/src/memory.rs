@@ -6,26 +6,15 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Queue;
 use leadscrew::calibration::Work;
-use leadscrew::protocol::reply::CAN_LEARN;
 use leadscrew_app::link::WorkMemory;
 use leadscrew_app::report::Report;
-use leadscrew_app::store::SET_BYTES;
 
-/// Words of the work memory: where there is a CCM, as many edges of an encoder can be learned; else short records have room.
-pub const WORDS: usize = if HAS_CCM {
-    leadscrew_app::link::WORDS
-} else {
-    1_024
-};
-/// Halves of it: as many again, or what the store needs.
-const HALVES: usize = if HAS_CCM { WORDS } else { SET_BYTES / 2 };
-/// What it suffices for, as bits of an identity.
-pub const CAPABILITIES: u32 = if HAS_CCM { CAN_LEARN } else { 0 };
-const HAS_CCM: bool = cfg!(not(feature = "stm32f446re"));
+/// Words of the work memory, and its halves: as many edges of an encoder can be learned.
+pub const WORDS: usize = leadscrew_app::link::WORDS;
 /// Ticks that thread mode may be behind.
 pub const REPORTS: usize = 24;
 
-type Memory = WorkMemory<WORDS, HALVES>;
+type Memory = WorkMemory<WORDS, WORDS>;
 
 /// A place that is given away once. The start neither clears nor loads it.
 struct Place<T> {
