@@ -151,9 +151,9 @@ pub trait Emulator {
     /// Reads a word as the program does, with what reading does to a register.
     fn fetch(&mut self, address: u32) -> Option<u32>;
 
-    /// Lets the program go on at an address with `argument` in its first register, from wherever it is: to call what it
+    /// Lets the program go on at an address with `arguments` in its first registers, from wherever it is: to call what it
     /// would not call, or to lead it astray.
-    fn jump(&mut self, address: u32, argument: u32);
+    fn jump(&mut self, address: u32, arguments: &[u32]);
 
     /// Number of the exception that is handled, 0 for none.
     fn exception(&self) -> u16;

@@ -11,12 +11,15 @@ pub const HOST: &[&str] = &[
     "leadscrew-client",
     "leadscrew-host",
     QEMU,
-    "leadscrew-emulator",
+    EMULATOR,
     "xtask",
 ];
 
 /// The QEMU harness; all its ignored tests need QEMU.
 pub const QEMU: &str = "leadscrew-qemu";
+
+/// The emulated part; its ignored tests need the image of [`AXIS_BOARD`].
+pub const EMULATOR: &str = "leadscrew-emulator";
 
 /// Board crates with the target of each, and the words that choose its chip; one cargo call a line.
 pub const BOARDS: &[(&str, &str, &[&str])] = &[

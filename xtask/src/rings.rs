@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use crate::command::{Call, cargo};
-use crate::packages::{AXIS_BOARD, BOARDS, HOST, QEMU, TARGET};
+use crate::packages::{AXIS_BOARD, BOARDS, EMULATOR, HOST, QEMU, TARGET};
 use crate::summary::Tests;
 use crate::{Result, bench, deny, no_panic, setup, size};
 
@@ -51,6 +51,10 @@ const RINGS: &[Ring] = &[
         work: Runner::qemu,
     },
     Ring {
+        name: "flashed image",
+        work: Runner::flashed,
+    },
+    Ring {
         name: "bench",
         work: |_| bench::run(false).into(),
     },
@@ -77,6 +81,10 @@ const LONG_RINGS: &[Ring] = &[
     Ring {
         name: "long qemu tests",
         work: Runner::long_qemu,
+    },
+    Ring {
+        name: "long flashed",
+        work: Runner::long_flashed,
     },
 ];
 
@@ -291,6 +299,26 @@ impl Runner {
         self.in_qemu(|call| call.env(LONG, "1"))
     }
 
+    fn flashed(&self) -> Outcome {
+        self.on_the_image(|call| call)
+    }
+
+    fn long_flashed(&self) -> Outcome {
+        self.on_the_image(|call| call.env(LONG, "1"))
+    }
+
+    /// Those that run the image that is flashed, which is built before.
+    fn on_the_image(&self, prepare: impl Fn(Call) -> Call) -> Outcome {
+        let build = cargo(["build", "--package", AXIS_BOARD, "--target", TARGET]);
+        let built = build
+            .words(&["--profile", "firmware", "--bin", "firmware"])
+            .run();
+        match built {
+            Ok(()) => tests(prepare(self.call(Choice::Flashed))),
+            Err(error) => Err(error).into(),
+        }
+    }
+
     fn call(&self, choice: Choice) -> Call {
         if self.nextest {
             let call = cargo(["nextest", "run", "--no-fail-fast", "--no-tests", "pass"]);
@@ -301,16 +329,19 @@ impl Runner {
             let filter = match choice {
                 Choice::Plain => return call.packages(HOST),
                 Choice::Qemu => of_qemu,
-                Choice::LongHost => format!("not {of_qemu}"),
+                Choice::Flashed => format!("package({EMULATOR})"),
+                Choice::LongHost => format!("not ({of_qemu} or package({EMULATOR}))"),
             };
             call.packages(HOST)
                 .words(&["--run-ignored", "only", "-E", &filter])
         } else {
             let call = cargo(["test", "--no-fail-fast", "--all-targets"]);
-            let others: Vec<_> = HOST.iter().copied().filter(|name| *name != QEMU).collect();
+            let is_other = |name: &&str| ![QEMU, EMULATOR].contains(name);
+            let others: Vec<_> = HOST.iter().copied().filter(is_other).collect();
             let packages: &[&str] = match choice {
                 Choice::Plain => return call.packages(HOST),
                 Choice::Qemu => &[QEMU],
+                Choice::Flashed => &[EMULATOR],
                 Choice::LongHost => &others,
             };
             call.packages(packages).words(&["--", "--ignored"])
@@ -325,6 +356,8 @@ enum Choice {
     Plain,
     /// The ignored ones of the QEMU harness: they need QEMU.
     Qemu,
+    /// The ignored ones of the emulated part: they need the image that is flashed.
+    Flashed,
     /// The ignored ones of the others: they take long.
     LongHost,
 }

@@ -73,6 +73,15 @@ impl Core {
         &self.cpu
     }
 
+    /// Goes on at an address with `arguments` in the first registers, outside of any IT block.
+    pub fn jump(&self, address: u32, arguments: &[u32]) {
+        for (register, argument) in (0..).zip(arguments) {
+            self.cpu.set_reg(register, *argument);
+        }
+        self.cpu.set_xpsr(self.cpu.xpsr() & !IT_STATE);
+        self.cpu.set_pc(address & !1);
+    }
+
     /// The flash erases or programs: no instruction comes from it.
     fn is_starved(&self) -> bool {
         let status = self

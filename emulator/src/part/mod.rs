@@ -289,11 +289,8 @@ impl Emulator for Part {
         word.ok().map(|word| word as u32)
     }
 
-    fn jump(&mut self, address: u32, argument: u32) {
-        let _ = self.with_core(|core| {
-            core.cpu().set_reg(0, argument);
-            core.cpu().set_pc(address & !1);
-        });
+    fn jump(&mut self, address: u32, arguments: &[u32]) {
+        let _ = self.with_core(|core| core.jump(address, arguments));
     }
 
     fn exception(&self) -> u16 {

@@ -5,7 +5,7 @@ use leadscrew_emulator::PutOut;
 use crate::session::{BOOT_MS, Board};
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_blank_board_boots_into_the_safe_state() {
     let board = Board::blank();
     board.run_ms(BOOT_MS);
@@ -19,7 +19,7 @@ fn a_blank_board_boots_into_the_safe_state() {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_tool_learns_what_the_board_is_and_how_it_stands() {
     let board = Board::blank();
     let mut tool = board.tool();

@@ -67,7 +67,7 @@ fn loses_no_edge(board: &Board, tool: &mut Axis, edges_per_s: f64) {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn no_edge_is_lost_at_150_a_millisecond_and_no_tick_is_late() {
     let board = Board::blank();
     let mut tool = board.tool();
@@ -79,7 +79,7 @@ fn no_edge_is_lost_at_150_a_millisecond_and_no_tick_is_late() {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn no_edge_is_lost_at_1200_a_millisecond_and_2500_ticks_a_second() {
     let board = Board::blank();
     let mut tool = board.tool();
@@ -98,7 +98,7 @@ fn no_edge_is_lost_at_1200_a_millisecond_and_2500_ticks_a_second() {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn every_index_comes_a_revolution_after_the_last_one() {
     let board = Board::blank();
     let mut tool = board.tool();
@@ -121,7 +121,7 @@ fn every_index_comes_a_revolution_after_the_last_one() {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_probe_is_latched_with_the_time_of_its_edge() {
     const TOUCHES: i32 = 5_000;
     let board = Board::blank();

@@ -81,7 +81,7 @@ fn on_the_host() -> [Vec<f64>; 2] {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn the_standard_move_follows_as_in_the_host_s_simulation() {
     let expected = on_the_host();
     let board = Board::blank();

@@ -8,7 +8,7 @@ use crate::session::{BOOT_MS, Board};
 const STACK_OVERFLOW: u8 = 5;
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_stack_that_reached_its_end_is_told_after_a_restart() {
     let board = Board::blank();
     board.run_ms(BOOT_MS);

@@ -17,7 +17,7 @@ fn found(tool: &mut Axis) -> Option<f64> {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn what_was_saved_is_there_after_a_restart_and_after_the_power_was_off() {
     let board = Board::blank();
     let mut tool = board.tool();
@@ -32,7 +32,7 @@ fn what_was_saved_is_there_after_a_restart_and_after_the_power_was_off() {
 }
 
 #[test]
-#[ignore = "the image does not boot yet: its stack is larger than its memory"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_cut_in_the_middle_of_a_write_leaves_the_old_or_the_new() {
     let board = Board::blank();
     let mut tool = board.tool();
