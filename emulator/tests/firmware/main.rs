@@ -6,6 +6,7 @@
 mod boot;
 mod capture;
 mod inputs;
+mod instructions;
 mod motion;
 mod references;
 mod safety;
