@@ -16,11 +16,14 @@ const START: &str = "_stack_start";
 const END: &str = "_stack_end";
 
 const TASKS: &str = "embassy_executor::raw::TaskStorage<F>::poll";
+const WAKERS: &str = "embassy_executor::raw::waker::";
 const PORT: &str =
     "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::";
 const RECONFIGURE: &str = "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::reconfigure";
 const CHECK: &str =
     "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::check";
+const ORDER: &str =
+    "<leadscrew_app::link::bench::Bench<F> as leadscrew::protocol::service::port::Port>::order";
 /// Closures, whose names do not tell whose.
 const CLOSURES: &str = "core::ops::function::FnOnce::call_once";
 
@@ -33,23 +36,27 @@ const THROUGH: &[Through<'_>] = &[
         reason: "the executor polls tasks",
     },
     Through {
-        callers: &["=SDIO", "=TIM8_BRK_TIM12"],
-        callees: &["embassy_executor::raw::waker::"],
-        reason: "interrupts wake tasks",
+        callers: &["SDIO", TIME],
+        callees: &[WAKERS],
+        reason: "handlers wake tasks of the one executor",
+    },
+    Through {
+        callers: &["leadscrew::protocol::service::motion::"],
+        callees: &[ORDER, CLOSURES],
+        reason: "motion is ordered",
     },
     Through {
         callers: &["leadscrew::protocol::service::settings::"],
-        callees: &[RECONFIGURE, CHECK],
-        reason: "settings go to the axis, if the inputs can follow it",
+        callees: &[RECONFIGURE, CHECK, CLOSURES],
+        reason: "settings go to the axis",
     },
     Through {
         callers: &[
             "leadscrew::protocol::service::",
             "leadscrew::protocol::decoder::Decoder<_>::feed_all",
-            "leadscrew_app::modbus::",
             TASKS,
         ],
-        callees: &[PORT, SENDING, SAYING, CLOSURES],
+        callees: &[PORT, SENDING, SAYING, CLOSURES, WAKERS],
         reason: "requests go to the axis, and replies to the line",
     },
     Through {

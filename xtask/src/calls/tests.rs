@@ -150,6 +150,16 @@ fn a_family_takes_the_stack_of_all_its_members_twice() {
 }
 
 #[test]
+fn a_family_is_called_through_pointers_by_itself_alone() {
+    let rules = Rules {
+        is_strict: false,
+        families: &["other"],
+        ..STRICT
+    };
+    assert_eq!(tree(&planted("blx\tr3"), rules).stack, 40 + 16 + 20);
+}
+
+#[test]
 fn addresses_are_taken_by_halves_and_from_words_of_the_image() {
     let code = "\
 00010400 <tick>:

@@ -32,7 +32,8 @@ pub struct Rules<'a> {
     pub reserved: &'a [&'a str],
     /// Functions at which the walk ends.
     pub ends: &'a [&'a str],
-    /// Functions that call one another through pointers, by what their names have in common; each may be on the stack twice.
+    /// Functions that call one another through pointers, and nobody else does, by what their names have in common; each may be
+    /// on the stack twice.
     pub families: &'a [&'a str],
     /// Functions that call themselves, and how often at most.
     pub repeated: &'a [(&'a str, u32)],
@@ -210,9 +211,14 @@ impl<'c> Walk<'c> {
                 .filter(|callee| is(through.callees, named(callee)))
                 .collect(),
             None if self.rules.is_strict => Vec::new(),
-            None => taken
-                .filter(|callee| !is(self.rules.reserved, named(callee)))
-                .collect(),
+            None => {
+                let families = self.rules.families;
+                let is_of_family = |name: &str| families.iter().any(|part| name.contains(part));
+                taken
+                    .filter(|callee| !is(self.rules.reserved, named(callee)))
+                    .filter(|callee| !is_of_family(&named(callee).name))
+                    .collect()
+            }
         };
         if found.is_empty() {
             let what = match of_caller {
