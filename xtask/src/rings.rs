@@ -4,9 +4,9 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use crate::command::{Call, cargo};
-use crate::packages::{AXIS_BOARD, BOARDS, EMULATOR, HOST, QEMU, TARGET};
+use crate::packages::{AXIS_BOARD, BOARDS, CHIPS, EMULATOR, HOST, QEMU, TARGET};
 use crate::summary::Tests;
-use crate::{Result, bench, deny, no_panic, setup, size};
+use crate::{Result, bench, deny, image, no_panic, setup, size};
 
 /// Asks tests that repeat something to repeat it often.
 const LONG: &str = "LEADSCREW_LONG";
@@ -33,6 +33,10 @@ const RINGS: &[Ring] = &[
     Ring {
         name: "clippy boards",
         work: |_| clippy_boards().into(),
+    },
+    Ring {
+        name: "board images",
+        work: |_| board_images().into(),
     },
     Ring {
         name: "tests on board",
@@ -199,6 +203,14 @@ fn clippy_boards() -> Result<()> {
     })
 }
 
+/// What is flashed, for every chip of the axis board.
+fn board_images() -> Result<()> {
+    CHIPS.iter().try_for_each(|(chip, words)| {
+        println!("{chip}");
+        image::build(AXIS_BOARD, "firmware", words)
+    })
+}
+
 /// They run on hardware alone; here they are linked.
 fn tests_on_board() -> Result<()> {
     cargo([
@@ -309,11 +321,7 @@ impl Runner {
 
     /// Those that run the image that is flashed, which is built before.
     fn on_the_image(&self, prepare: impl Fn(Call) -> Call) -> Outcome {
-        let build = cargo(["build", "--package", AXIS_BOARD, "--target", TARGET]);
-        let built = build
-            .words(&["--profile", "firmware", "--bin", "firmware"])
-            .run();
-        match built {
+        match image::build(AXIS_BOARD, "firmware", &[]) {
             Ok(()) => tests(prepare(self.call(Choice::Flashed))),
             Err(error) => Err(error).into(),
         }
@@ -329,7 +337,7 @@ impl Runner {
             let filter = match choice {
                 Choice::Plain => return call.packages(HOST),
                 Choice::Qemu => of_qemu,
-                Choice::Flashed => format!("package({EMULATOR})"),
+                Choice::Flashed => format!("package({EMULATOR}) and binary(firmware)"),
                 Choice::LongHost => format!("not ({of_qemu} or package({EMULATOR}))"),
             };
             call.packages(HOST)
