@@ -56,7 +56,7 @@ fn is_cleared(board: &Board, tool: &mut Axis) {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn every_line_ends_a_motion_by_its_own_fault() {
     let board = Board::blank();
     let mut tool = board.tool();
@@ -77,7 +77,7 @@ fn every_line_ends_a_motion_by_its_own_fault() {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn a_limit_switch_ends_a_motion_towards_it_and_lets_the_axis_away() {
     let board = Board::blank();
     let mut tool = board.tool();

@@ -116,7 +116,7 @@ fn has_changed(old: u32, new: u32) -> bool {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn the_tick_takes_the_instructions_that_it_took() {
     let rows = rows();
     let text = text(&rows);

@@ -45,7 +45,7 @@ fn following(source: Source) -> (Board, Axis) {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn the_setpoint_follows_steps_one_to_one_forward_and_back() {
     let (board, mut tool) = following(Source::StepDir);
     let counts_per_mm = tool.scale().unwrap().counts_per_mm;
@@ -85,7 +85,7 @@ fn the_setpoint_follows_steps_one_to_one_forward_and_back() {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn the_axis_goes_as_fast_as_the_analog_command_says() {
     let (board, mut tool) = following(Source::Analog);
     let deadband = 0.001;
@@ -134,7 +134,7 @@ fn spindle_count(board: &Board) -> i64 {
 }
 
 #[test]
-#[ignore = "needs the image that is flashed"]
+#[ignore = "needs the image; run by cargo xtask test"]
 fn the_second_encoder_is_counted_to_the_last_edge_through_wraps_and_back() {
     let scenario = Scenario {
         machine: SPINDLE,
