@@ -1,8 +1,9 @@
 //! The part on rsemu: its description, own models where rsemu's do not do, and the [`Emulator`] of it.
 //!
 //! Own are the USARTs (baud rate, idle line), the SPI and the ADC (which talk to the surroundings), the pins (changes at
-//! their clocks), the reset of the whole part, and a shell around the core: it sleeps at once through a whole round, and
-//! stands still while the flash erases or programs, as the part does and rsemu's does not.
+//! their clocks), the reset of the whole part, and a shell around the core: it sleeps at once through a whole round, stands
+//! still while the flash erases or programs, as the part does and rsemu's does not, and lets no interrupt into an IT block,
+//! after which rsemu's would do the rest of the block whatever its condition.
 
 mod adc;
 mod calls;

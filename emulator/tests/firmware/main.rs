@@ -5,6 +5,7 @@
 
 mod boot;
 mod capture;
+mod commissioning;
 mod inputs;
 mod instructions;
 mod motion;

@@ -1,7 +1,7 @@
 //! What is saved stays.
 
 use leadscrew_client::{Axis, Kind};
-use leadscrew_emulator::Emulator as _;
+use leadscrew_emulator::{Emulator as _, MILLISECOND};
 
 use crate::session::Board;
 
@@ -31,28 +31,60 @@ fn what_was_saved_is_there_after_a_restart_and_after_the_power_was_off() {
     assert_eq!(found(&mut board.tool()), Some(5000.0));
 }
 
+/// Longer than a save without an erasure: one takes 250 ms.
+const ERASES_S: f64 = 0.2;
+
+/// A board whose next save erases a sector, and what it has saved.
+fn before_an_erasure() -> (Board, f64) {
+    let mut board = Board::blank();
+    for change in 0.. {
+        assert!(change < 20, "nothing is ever erased");
+        // Kept before the save, so that it can be done again.
+        let before = board.power_cycled();
+        let begun = board.with(|axis| axis.seconds());
+        let mut tool = board.tool();
+        saved(&mut tool, value(change));
+        if board.with(|axis| axis.seconds()) - begun > ERASES_S {
+            return (before, value(change - 1));
+        }
+        drop(tool);
+        board = board.power_cycled();
+    }
+    unreachable!()
+}
+
+fn value(change: i32) -> f64 {
+    5000.0 + f64::from(change)
+}
+
+/// Whatever the cut leaves, the old or the new is there, and the store goes on.
+fn survives(flash: Vec<u8>, old: f64, new: f64) -> bool {
+    let board = Board::with_flash(flash);
+    let mut tool = board.tool();
+    let value = found(&mut tool);
+    assert!(value == Some(old) || value == Some(new), "{value:?}");
+    saved(&mut tool, 4000.0);
+    drop(tool);
+    assert_eq!(found(&mut board.power_cycled().tool()), Some(4000.0));
+    value == Some(new)
+}
+
 #[test]
 #[ignore = "needs the image; run by cargo xtask test"]
-fn a_cut_in_the_middle_of_a_write_leaves_the_old_or_the_new() {
-    let board = Board::blank();
-    let mut tool = board.tool();
-    saved(&mut tool, 5000.0);
-    drop(tool);
-    let base = board;
+fn a_cut_in_the_middle_of_a_write_or_an_erasure_leaves_the_old_or_the_new() {
+    const NEW: f64 = 6000.0;
+    let (base, old) = before_an_erasure();
     let mut seen = Vec::new();
-    for cut_us in [300, 1_000, 3_000, 6_000, 12_000, 25_000] {
+    for cut_ms in [5, 15, 100, 200, 300, 700] {
         let board = base.power_cycled();
         let mut tool = board.tool();
-        tool.set_parameter(NAME, 6000.0).unwrap();
-        let cut = board.with(|axis| axis.part().now()) + cut_us * 84;
+        tool.set_parameter(NAME, NEW).unwrap();
+        let cut = board.with(|axis| axis.part().now()) + cut_ms * MILLISECOND;
         let flash = board.cut_at(cut, || tool.save_parameters());
         drop(tool);
-        let found = found(&mut Board::with_flash(flash).tool());
-        assert!(
-            found == Some(5000.0) || found == Some(6000.0),
-            "{cut_us} µs: {found:?}"
-        );
-        seen.push(found);
+        seen.push(survives(flash, old, NEW));
     }
-    println!("{seen:?}");
+    println!("the new one: {seen:?}");
+    assert!(!seen[0] && seen[5], "{seen:?}");
+    assert!(seen.is_sorted(), "{seen:?}");
 }
