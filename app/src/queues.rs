@@ -192,7 +192,8 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
 }
 
 impl LinkEnds {
-    /// Solves for the gains of a configuration and hands both to the tick, which answers with `ticket`.
+    /// Solves for the gains of a configuration, unless the one before had the same estimators, and hands both to the tick, which
+    /// answers with `ticket`.
     ///
     /// # Errors
     /// [`Refusal::QueueFull`] while the tick has not taken the one before.
@@ -200,12 +201,21 @@ impl LinkEnds {
         let place = self.config_place.take();
         let place = place.or_else(|| self.configs_back.dequeue());
         let place = place.ok_or(Refusal::QueueFull)?;
-        place.clear();
-        // There is room, now that it is empty, and in the queue, as there is no other place.
-        let _ = place.push(Prepared {
-            config: *config,
-            gains: config.estimators.gains(),
-        });
+        match place.first_mut() {
+            // They take seconds.
+            Some(before) if before.config.estimators == config.estimators => {
+                before.config = *config;
+            }
+            _ => {
+                place.clear();
+                // There is room, now that it is empty.
+                let _ = place.push(Prepared {
+                    config: *config,
+                    gains: config.estimators.gains(),
+                });
+            }
+        }
+        // There is room, as there is no other place.
         let _ = self.configs.enqueue((ticket, place));
         Ok(())
     }
@@ -232,5 +242,50 @@ impl TickEnds {
         let more = u32::from(result.is_err());
         self.refused
             .store(refused.wrapping_add(more), Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use leadscrew::estimator::EstimatorConfig;
+    use leadscrew::estimator::observer::{Config, ObserverParams};
+    use leadscrew::params::AxisParams;
+    use leadscrew::units::AxisScale;
+    use std::boxed::Box;
+
+    use super::*;
+
+    fn config_of(natural_period_s: f64, full_command_feed_mm_per_min: f64) -> AxisConfig {
+        let params = ObserverParams {
+            natural_period_s,
+            ..ObserverParams::default()
+        };
+        let scale = AxisScale::new(1000.0, 1000.0).unwrap();
+        let observer = EstimatorConfig::Observer(Config::new(&params, scale).unwrap());
+        let mut params = AxisParams::new(observer);
+        params.motion.full_command_feed_mm_per_min = full_command_feed_mm_per_min;
+        params.validate().unwrap()
+    }
+
+    #[test]
+    fn every_configuration_comes_with_its_own_gains() {
+        let queues: &'static mut Queues = Box::leak(Box::new(Queues::new()));
+        let (mut tick, _, mut link, _) = queues.split();
+        let slow = config_of(0.09, 9600.0);
+        let same_estimator = config_of(0.09, 12_000.0);
+        let fast = config_of(0.03, 12_000.0);
+        for (ticket, config) in [slow, same_estimator, fast, slow].iter().enumerate() {
+            let ticket = ticket as Ticket;
+            assert_eq!(link.configure(ticket, config), Ok(()));
+            assert_eq!(link.configure(ticket, config), Err(Refusal::QueueFull));
+            let (told, place) = tick.configs.dequeue().unwrap();
+            let prepared = place.first().unwrap();
+            assert_eq!((told, prepared.config), (ticket, *config));
+            assert_eq!(prepared.gains, config.estimators.gains());
+            assert!(tick.configs_back.enqueue(place).is_ok());
+        }
+        assert_ne!(slow.estimators.gains(), fast.estimators.gains());
     }
 }

@@ -259,6 +259,11 @@ messages! {
         EndRun = 55 {}
         /// Asks why the firmware was last started anew without being asked to: [`Reset`](super::reply::Reply::Reset).
         LastReset = 56 {}
+        /// Engages the gear, or disengages it, while [`Source::Gearing`](crate::setpoint::sources::Source) is selected.
+        Engage = 57 {
+            /// 0: disengages; 1: engages.
+            engaged: u8,
+        }
     }
 }
 

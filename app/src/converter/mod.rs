@@ -161,14 +161,6 @@ impl Converter {
         }
     }
 
-    /// Writes the settings anew, by which short circuit and brown-out are forgotten; the next ticks tell what is still wrong. To be
-    /// called while the axis is off. One word.
-    pub fn rearm(&mut self, bus: &mut impl Bus) {
-        // What was asked for before is answered by this word, unseen.
-        self.has_asked = false;
-        let _ = bus.exchange(words::write_control(self.settings));
-    }
-
     /// What the control register tells.
     const fn judge(&self, word: u32) -> Option<Trouble> {
         let Some(seen) = words::answer(Register::Control, word) else {

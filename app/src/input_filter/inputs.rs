@@ -26,6 +26,13 @@ pub enum InputError {
     Filter(FilterError),
     /// Too many of them in a tick.
     Hold(HoldError),
+    /// The edge timer is told to run at another rate than the board's does.
+    Timer {
+        /// What `timer_hz` says.
+        told_hz: f64,
+        /// What the timer has.
+        timer_hz: f64,
+    },
 }
 
 impl fmt::Display for InputError {
@@ -33,6 +40,10 @@ impl fmt::Display for InputError {
         match self {
             Self::Filter(error) => error.fmt(f),
             Self::Hold(error) => error.fmt(f),
+            Self::Timer { told_hz, timer_hz } => write!(
+                f,
+                "timer_hz = {told_hz}, and the board's edge timer runs at {timer_hz} Hz: set it to that"
+            ),
         }
     }
 }
@@ -43,8 +54,16 @@ impl Inputs {
     /// The filter for an axis with `settings`: the longest that passes its edges at full command.
     ///
     /// # Errors
-    /// [`InputError`] if they are too fast for a part of the inputs, or too many for the ring.
+    /// [`InputError`] if they are too fast for a part of the inputs, or too many for the ring; or where `timer_hz` is not the
+    /// board's, as every time would be scaled wrongly.
     pub fn filter(&self, settings: &Settings) -> Result<InputFilter, InputError> {
+        let told_hz = settings.axis.timer_hz;
+        if told_hz != self.timer_hz {
+            return Err(InputError::Timer {
+                told_hz,
+                timer_hz: self.timer_hz,
+            });
+        }
         let motion = &settings.axis.motion;
         let filter = InputFilter::for_feed(
             motion.full_command_feed_mm_per_min,
@@ -75,21 +94,26 @@ impl Inputs {
 pub struct InputsInForce {
     /// The inputs.
     pub inputs: Inputs,
-    /// The filter; it is changed by a restart alone.
-    pub filter: InputFilter,
+    /// The filter; it is changed by a restart alone. `None` if no filter would do: edge times are not used then.
+    pub filter: Option<InputFilter>,
 }
 
 impl InputsInForce {
     /// Whether an axis with `settings` may be enabled.
     ///
     /// # Errors
-    /// [`Refusal::TooFastForInputs`] if no filter will do; [`Refusal::RestartNeeded`] if another than the one in force does.
+    /// [`Refusal::TooFastForInputs`] if no filter will do; [`Refusal::RestartNeeded`] if another than the one in force does;
+    /// [`Refusal::Inconsistent`] for another clock of the edge timer than the board's.
     pub fn check(&self, settings: &Settings) -> Result<(), Refusal> {
         let best = self.inputs.filter(settings);
-        let best = best.map_err(|_| Refusal::TooFastForInputs)?;
+        let best = best.map_err(|error| match error {
+            InputError::Timer { .. } => Refusal::Inconsistent,
+            InputError::Filter(_) | InputError::Hold(_) => Refusal::TooFastForInputs,
+        })?;
+        let filter = self.filter.ok_or(Refusal::RestartNeeded)?;
         // A longer one would be better, a shorter one is needed.
-        let is_passed = self.filter.clocks() <= best.clocks();
-        if is_passed && self.inputs.hold(settings, self.filter).is_ok() {
+        let is_passed = filter.clocks() <= best.clocks();
+        if is_passed && self.inputs.hold(settings, filter).is_ok() {
             Ok(())
         } else {
             Err(Refusal::RestartNeeded)
@@ -126,8 +150,29 @@ mod tests {
         let filter = INPUTS.filter(&settings(feed, tick_hz)).unwrap();
         InputsInForce {
             inputs: INPUTS,
-            filter,
+            filter: Some(filter),
         }
+    }
+
+    #[test]
+    fn inputs_that_were_refused_at_boot_wait_for_a_restart() {
+        let refused = InputsInForce {
+            inputs: INPUTS,
+            filter: None,
+        };
+        let slower = settings(9600.0, 10_000.0);
+        assert!(INPUTS.filter(&slower).is_ok());
+        assert_eq!(refused.check(&slower), Err(Refusal::RestartNeeded));
+    }
+
+    #[test]
+    fn another_clock_than_the_board_s_is_refused() {
+        let mut told = settings(9600.0, 1000.0);
+        told.axis.timer_hz = 42e6;
+        let error = INPUTS.filter(&told).unwrap_err();
+        assert!(matches!(error, InputError::Timer { .. }), "{error}");
+        let in_force = in_force(9600.0, 1000.0);
+        assert_eq!(in_force.check(&told), Err(Refusal::Inconsistent));
     }
 
     #[test]
@@ -160,7 +205,7 @@ mod tests {
         assert_eq!(lathe.check(&settings(9600.0, 1000.0)), Ok(()));
         assert_eq!(lathe.check(&faster), Err(Refusal::RestartNeeded));
         let restarted = in_force(24_000.0, 1000.0);
-        assert!(restarted.filter.clocks() < lathe.filter.clocks());
+        assert!(restarted.filter.unwrap().clocks() < lathe.filter.unwrap().clocks());
         assert_eq!(restarted.check(&faster), Ok(()));
         assert_eq!(restarted.check(&settings(9600.0, 1000.0)), Ok(()));
     }

@@ -151,18 +151,3 @@ fn after_one_lost_tick_of_the_bus_it_goes_on() {
     assert_eq!(converter.put(&mut chip, command(0.2), false).trouble, None);
     assert_eq!(converter.put(&mut chip, command(0.2), false).trouble, None);
 }
-
-#[test]
-fn what_was_latched_is_forgotten_when_it_is_armed_anew() {
-    for harm in [|chip: &mut Chip| chip.is_shorted = true, Chip::brown_out] {
-        let (mut chip, mut converter) = started();
-        harm(&mut chip);
-        converter.put(&mut chip, Command::ZERO, false);
-        chip.is_shorted = false;
-        converter.rearm(&mut chip);
-        for _ in 0..3 {
-            assert_eq!(converter.put(&mut chip, Command::ZERO, false).trouble, None);
-        }
-        assert_eq!(chip.volts(), 0.0);
-    }
-}

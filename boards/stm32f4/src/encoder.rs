@@ -202,13 +202,17 @@ pub fn count_now() -> u32 {
     pac::TIM2.cnt().read()
 }
 
-/// Count and time of an index that came since this was asked last, if not after `sampled_at`: such a one is the next tick's.
-pub fn take_index(sampled_at: u32) -> Option<Latch> {
+/// Count and time of an index that came since this was asked last, at `before`, if not after `sampled_at`: such a one is the next
+/// tick's.
+pub fn take_index(sampled_at: u32, before: Option<u32>) -> Option<Latch> {
     if !pac::TIM2.sr().read().ccif(CH3) {
         return None;
     }
     let time = pac::TIM5.ccr(CH4).read();
-    if sampled_at.wrapping_sub(time).cast_signed() < 0 {
+    // The timers' filters sample at their own clocks: of one index the count may be there some clocks before the time, which then
+    // is that of the index before.
+    let is_there = before != Some(time) && sampled_at.wrapping_sub(time).cast_signed() >= 0;
+    if !is_there {
         return None;
     }
     // Reading the latch clears its flag; both belong to the same edge.

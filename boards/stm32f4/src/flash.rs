@@ -74,16 +74,20 @@ impl NorFlashError for FlashError {
 pub struct Flash(());
 
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
-/// The processor stood still: ticks were missed, and an axis that is off does not mind.
+/// Sectors are being erased.
+static IS_BUSY: AtomicBool = AtomicBool::new(false);
+/// They were: ticks were missed, and an axis that is off does not mind.
 static STALLED: AtomicBool = AtomicBool::new(false);
 
-/// Whether the processor stood still for the flash since this was asked last.
+/// Whether the processor may have stood still for the flash since this was asked last.
 pub fn take_stall() -> bool {
-    let has_stalled = STALLED.load(Ordering::Relaxed);
+    // In this order: it is set before the other one is cleared.
+    let is_busy = IS_BUSY.load(Ordering::SeqCst);
+    let has_stalled = STALLED.load(Ordering::SeqCst);
     if has_stalled {
-        STALLED.store(false, Ordering::Relaxed);
+        STALLED.store(false, Ordering::SeqCst);
     }
-    has_stalled
+    is_busy || has_stalled
 }
 
 impl Flash {
@@ -154,12 +158,13 @@ impl NorFlash for Flash {
             return Err(FlashError::Enabled);
         }
         watchdog::lengthen().map_err(|_| FlashError::Watchdog)?;
+        IS_BUSY.store(true, Ordering::SeqCst);
         let erased = sectors.iter().try_for_each(|sector| {
             watchdog::feed();
-            STALLED.store(true, Ordering::Relaxed);
             unlocked(|| erase_sector(sector.number))
         });
-        STALLED.store(true, Ordering::Relaxed);
+        STALLED.store(true, Ordering::SeqCst);
+        IS_BUSY.store(false, Ordering::SeqCst);
         // Otherwise no axis is enabled any more, which tells.
         watchdog::shorten().map_err(|_| FlashError::Watchdog)?;
         erased

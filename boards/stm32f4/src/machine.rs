@@ -21,6 +21,8 @@ pub struct Machine {
     is_held: bool,
     taken: Taken<RING>,
     index: Option<Latch>,
+    /// When the newest index came.
+    index_at: Option<u32>,
     probe: Option<Latch>,
     home: Option<Latch>,
     lines: Lines,
@@ -46,6 +48,7 @@ impl Machine {
             is_held,
             taken,
             index: None,
+            index_at: None,
             probe: None,
             home: None,
             lines: lines::read(),
@@ -69,12 +72,16 @@ impl Machine {
     /// An index that came after the sample is the next tick's.
     fn note_index(&mut self) {
         let sampled_at = self.taken.sampled_at;
-        self.index = encoder::take_index(sampled_at);
+        self.index = encoder::take_index(sampled_at, self.index_at);
+        self.index_at = self.index.map(|latch| latch.time).or(self.index_at);
     }
 
     /// A stamp with its count: by the edges if they tell, else as its interrupt read it.
     fn counted(&self, stamp: &Stamp) -> Option<Latch> {
         let latch = stamp.take(self.taken.sampled_at)?;
+        if !self.is_held {
+            return Some(latch);
+        }
         let count = count_at(&self.taken, self.edges(), latch.time);
         Some(Latch {
             count: count.unwrap_or(latch.count),

@@ -73,13 +73,14 @@ impl References {
     /// Reads all of them.
     pub fn sample(&mut self) {
         // The index first: one that comes meanwhile is not older than the count.
-        let index = pac::TIM3.sr().read().ccif(CH3);
-        let latched = pac::TIM3.ccr(CH3).read().ccr();
+        // Read only where it is flagged: a read clears the flag, also that of one that came after it was looked at.
+        let is_flagged = pac::TIM3.sr().read().ccif(CH3);
+        let index = is_flagged.then(|| pac::TIM3.ccr(CH3).read().ccr());
         let (count, at) = (self.master_count, self.master_at);
         self.master_count = self.master.update(pac::TIM3.cnt().read().cnt());
         self.master_at = encoder::now();
         self.master_edge_at = self.newest_edge(count, at);
-        self.master_index = index.then(|| Latch {
+        self.master_index = index.map(|latched| Latch {
             count: self.master.at(latched),
             // Only the count is latched; nobody asks for a finer time of a spindle's index.
             time: self.master_at,

@@ -32,6 +32,8 @@ pub fn fail(reason: Reason) -> ! {
 
 /// Stays in the safe state until the power goes, for a board that cannot be made ready.
 pub fn stop(reason: &str) -> ! {
+    // A tick that runs already would put out again what it has.
+    cortex_m::interrupt::disable();
     enter();
     defmt::error!("stopped: {=str}", reason);
     loop {

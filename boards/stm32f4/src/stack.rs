@@ -6,8 +6,8 @@ use board_common::paint;
 
 /// What start-up code paints with (`paint-stack` of cortex-m-rt).
 const PAINT: u32 = 0xcccc_cccc;
-/// Words at the end that have to stay painted, which the tick looks at: fewer than any frame of a function that matters, so that
-/// none steps over them all.
+/// Words at the end that have to stay painted, which the tick looks at. A frame that leaves them as they were and goes beyond
+/// leaves the memory: the processor locks up, and the watchdog ends it.
 const GUARD: usize = 8;
 /// Bytes that were free when it was told last.
 static TOLD: AtomicU32 = AtomicU32::new(u32::MAX);

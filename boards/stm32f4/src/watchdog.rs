@@ -86,7 +86,8 @@ impl Watchdog for Iwdg {
         IS_OPEN.store(true, Ordering::SeqCst);
         IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         IWDG.pr().write(|w| w.set_pr(divider));
-        IWDG.rlr().write(|w| w.set_rl(reload));
+        // It counts from the reload value to zero and once more.
+        IWDG.rlr().write(|w| w.set_rl(reload.saturating_sub(1)));
         IS_OPEN.store(false, Ordering::SeqCst);
     }
 
@@ -95,7 +96,7 @@ impl Watchdog for Iwdg {
     }
 }
 
-/// Feeds it; the tick alone calls this.
+/// Feeds it: the tick does, an erasure before each sector, and a board that has stopped for good.
 #[inline(always)]
 pub fn feed() {
     if !IS_OPEN.load(Ordering::Relaxed) {

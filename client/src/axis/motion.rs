@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::request::Request;
+use leadscrew::setpoint::sources::Source;
 use leadscrew::supervisor::State;
 
 use super::Axis;
@@ -74,6 +75,26 @@ impl Axis {
         let feed_um_per_min = feed(feed_mm_per_min)?;
         let asked = self.order(&Request::Jog { feed_um_per_min });
         self.explained(asked, || format!("A jog with {feed_mm_per_min} mm/min"))
+    }
+
+    /// Selects what gives the setpoint while the axis stands.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] while it moves, a gear is engaged, or the source's parameters do not allow it.
+    pub fn select(&mut self, source: Source) -> Result<(), Error> {
+        self.order(&Request::Select {
+            source: source as u8,
+        })
+    }
+
+    /// Engages the gear while the master turns or stands, or disengages it.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] unless the axis is enabled and [`Source::Gearing`] selected, or while the master is lost.
+    pub fn engage_gear(&mut self, engaged: bool) -> Result<(), Error> {
+        self.order(&Request::Engage {
+            engaged: engaged.into(),
+        })
     }
 
     /// Stops whatever moves the axis, forgets the target, and waits until it stands. Needs no lease.

@@ -139,6 +139,7 @@ impl Connection {
                 | Request::Resume {}
                 | Request::Override { .. }
                 | Request::Select { .. }
+                | Request::Engage { .. }
                 | Request::StartExperiment { .. }
                 | Request::LearnRun { .. }
         );

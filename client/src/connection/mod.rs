@@ -21,8 +21,9 @@ use control::Lease;
 use kept::Kept;
 pub use kept::Sample;
 
-/// How many times longer an axis may take over what writes its flash.
-const FLASH_IS_SLOWER: u32 = 10;
+/// How many times longer an axis may take over what it computes or writes: gains of an observer take an STM32F4 some 2 s, and
+/// so does an erasure.
+const LONGER: u32 = 10;
 
 /// A session with an axis.
 ///
@@ -183,14 +184,11 @@ impl Connection {
         answer
     }
 
-    const fn patience_for(&self, request: &Request<'_>) -> Duration {
+    fn patience_for(&self, request: &Request<'_>) -> Duration {
         let lost = self.options.timing.lost;
         match request {
             Request::Hello { .. } => self.options.timing.greeting,
-            Request::SaveParameters {}
-            | Request::SaveBytes { .. }
-            | Request::Erase { .. }
-            | Request::SaveMap {} => lost.saturating_mul(FLASH_IS_SLOWER),
+            request if request.takes_long() => lost.saturating_mul(LONGER),
             _ => lost,
         }
     }

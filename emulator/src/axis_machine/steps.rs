@@ -4,7 +4,7 @@ use super::wired;
 use crate::CLOCK_HZ;
 use crate::emulator::Pin;
 
-/// Clocks that a step pulse is high, and that the direction is there before.
+/// Clocks that a step pulse is high. The direction is there a step's period before.
 const PULSE: u64 = 420;
 
 /// Steps of an outer control.

@@ -97,7 +97,11 @@ impl Core {
             return 0;
         }
         let mut used = 0;
-        while self.cpu.xpsr() & IT_STATE != 0 {
+        // A block has four instructions at most; a core that sleeps or locks up in one goes no further.
+        for _ in 0..4 {
+            if self.cpu.xpsr() & IT_STATE == 0 {
+                break;
+            }
             used += self.cpu.run_budget(1);
         }
         self.gate.open();

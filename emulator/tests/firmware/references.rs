@@ -2,33 +2,26 @@
 
 use std::time::Duration;
 
-use leadscrew::protocol::request::Request;
 use leadscrew::scope::{Setup, Signal, Signals, Trigger};
 use leadscrew::setpoint::sources::Source;
+use leadscrew::supervisor::Fault;
 use leadscrew_client::{Axis, ScopePhase};
 use leadscrew_emulator::{AxisMachine, Part};
-use leadscrew_hal_mock::scenario::{Base, Outer, Scenario, Setting, workshop};
+use leadscrew_hal_mock::scenario::{Base, Outer, Scenario, Setting, Trouble, workshop};
 
 use crate::motion::set_up;
 use crate::session::Board;
 
 /// So slow that nothing comes.
 const STANDS: f64 = 1e-3;
+/// Steps of the machine that a trouble lasts: a second.
+const LASTS: u32 = 20_000;
 /// A spindle that is there, and turns when it is told to.
 const SPINDLE: &[Setting] = &[Setting {
     section: "spindle",
     key: "rpm",
     value: 1e-6,
 }];
-
-/// Lets a source give the setpoint.
-fn select(tool: &mut Axis, source: Source) {
-    let request = Request::Select {
-        source: source as u8,
-    };
-    tool.connection().order(&request).unwrap();
-    tool.wait(Duration::from_millis(20)).unwrap();
-}
 
 fn wait_ms(tool: &mut Axis, milliseconds: u64) {
     tool.wait(Duration::from_millis(milliseconds)).unwrap();
@@ -40,7 +33,8 @@ fn following(source: Source) -> (Board, Axis) {
     let mut tool = board.tool();
     set_up(&mut tool);
     tool.enable().unwrap();
-    select(&mut tool, source);
+    tool.select(source).unwrap();
+    wait_ms(&mut tool, 20);
     (board, tool)
 }
 
@@ -163,4 +157,53 @@ fn the_second_encoder_is_counted_to_the_last_edge_through_wraps_and_back() {
     println!("{counted} d counted of {passed}");
     assert!(passed > 1 << 17, "{passed}");
     assert_eq!(i64::from(counted), passed);
+}
+
+#[test]
+#[ignore = "needs the image; run by cargo xtask test"]
+fn a_gear_keeps_its_ratio_and_a_lost_master_ends_it() {
+    // A feed of 1 mm a turn: 4 096 d of the spindle for 1 000 of the axis.
+    const RATIO: (f64, f64) = (1000.0, 4096.0);
+    let scenario = Scenario {
+        machine: SPINDLE,
+        ..workshop(Base::Full, 1000.0, 1)
+    };
+    let board = Board::at(AxisMachine::of(&scenario).unwrap(), Part::blank_flash());
+    let mut tool = board.tool();
+    set_up(&mut tool);
+    tool.edit_parameters(|edit| {
+        edit.set_parameter("gear_axis_counts", RATIO.0)?;
+        edit.set_parameter("gear_master_counts", RATIO.1)
+    })
+    .unwrap();
+    tool.enable().unwrap();
+    tool.select(Source::Gearing).unwrap();
+    tool.engage_gear(true).unwrap();
+    wait_ms(&mut tool, 100);
+    let counts_per_mm = tool.scale().unwrap().counts_per_mm;
+    let (begin, turned) = (tool.status().unwrap(), spindle_count(&board));
+    for (rpm, milliseconds) in [(600.0, 1_500), (-300.0, 1_000), (0.0, 1_500)] {
+        board.machine(|machine| machine.world_mut().set(&Outer::SpindleSpeed { rpm }));
+        wait_ms(&mut tool, milliseconds);
+        let status = tool.status().unwrap();
+        assert_eq!(status.fault_number, 0, "{status:?}");
+    }
+    let end = tool.status().unwrap();
+    let moved = (end.setpoint_mm - begin.setpoint_mm) * counts_per_mm;
+    let master = (spindle_count(&board) - turned) as f64;
+    let expected = master * RATIO.0 / RATIO.1;
+    println!("the setpoint moved by {moved:.2} d for {expected:.2}");
+    assert!(expected > 5_000.0, "{expected}");
+    // A count of the master at each end, and the estimate of where in it the spindle is.
+    assert!((moved - expected).abs() < 1.0, "{moved} of {expected}");
+
+    board.machine(|machine| machine.world_mut().set(&Outer::SpindleSpeed { rpm: 300.0 }));
+    wait_ms(&mut tool, 500);
+    let lost = Trouble::MasterLost;
+    board.machine(|machine| machine.world_mut().begin(&lost, LASTS).unwrap());
+    wait_ms(&mut tool, 1_000);
+    let status = tool.status().unwrap();
+    println!("{:?}", status.fault());
+    assert_eq!(status.fault(), Some(Fault::SetpointLost), "{status:?}");
+    assert!(!status.is_moving, "{status:?}");
 }

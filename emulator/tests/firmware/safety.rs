@@ -19,7 +19,7 @@ const PANIC: u8 = 1;
 const HARD_FAULT: u8 = 2;
 const WATCHDOG: u8 = 3;
 /// Longest time from a failure to outputs that are safe: the watchdog's at its slowest, and a tick.
-const LONGEST_MS: u64 = 22;
+const LONGEST_MS: u64 = 11;
 
 /// An axis in motion.
 fn moving() -> (Board, Axis) {

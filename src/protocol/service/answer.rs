@@ -159,6 +159,7 @@ impl Inner {
             Request::ClearWarnings {} => axis(port, axis::Request::ClearWarnings),
             Request::Home {} => axis(port, axis::Request::Home),
             Request::Select { source } => axis(port, axis::Request::Select(source_of(source)?)),
+            Request::Engage { engaged } => axis(port, axis::Request::Engage(switch(engaged)?)),
             Request::Stop {} if !seen.is_planned => port.order(&Order::Enable(false)),
             Request::Subscribe { every } => {
                 self.every = every;
@@ -242,6 +243,15 @@ impl Inner {
             State::Fault => Refusal::FaultLatched,
             State::Disabled | State::Enabling => Refusal::NotEnabled,
         })
+    }
+}
+
+/// Off or on.
+const fn switch(number: u8) -> Result<bool, Refusal> {
+    match number {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Refusal::NotSupported),
     }
 }
 

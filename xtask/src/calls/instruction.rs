@@ -80,7 +80,7 @@ impl<'t> Instruction<'t> {
         }
     }
 
-    /// Bytes by which it lowers the stack pointer; `None` if they are in a register.
+    /// Bytes by which it lowers the stack pointer; `None` if that cannot be told.
     pub fn pushed(&self) -> Option<u32> {
         match self.operation {
             "push" => Some(4 * registers(self.operands)),
@@ -95,6 +95,13 @@ impl<'t> Instruction<'t> {
                 let number = self.operands.split_once("[sp, #-");
                 let number = number.and_then(|(_, number)| number.strip_suffix("]!"));
                 Some(number.and_then(immediate).unwrap_or(0))
+            }
+            // What else writes back to it.
+            _ if self.operands.contains("[sp, #-") && self.operands.ends_with("]!") => None,
+            "vstmdb" | "mov" | "mov.w" | "bic" | "bic.w" | "and" | "subs"
+                if self.operands.starts_with("sp") =>
+            {
+                None
             }
             _ => Some(0),
         }

@@ -117,12 +117,16 @@ fn machine(settings: &Settings) -> (Machine, InputsInForce) {
         // No axis is enabled then. Without a ring that holds everything no edge times are used.
         defmt::error!("inputs: {}", defmt::Display2Format(error));
     }
-    let filter = chosen.unwrap_or(InputFilter::shortest());
+    let in_force = chosen.ok();
+    let filter = in_force.unwrap_or(InputFilter::shortest());
     encoder::start(EDGES.address(), filter);
     latches::start(filter);
-    let machine = Machine::new(filter, chosen.is_ok(), References::start());
-    let inputs = encoder::INPUTS;
-    (machine, InputsInForce { inputs, filter })
+    let machine = Machine::new(filter, in_force.is_some(), References::start());
+    let inputs = InputsInForce {
+        inputs: encoder::INPUTS,
+        filter: in_force,
+    };
+    (machine, inputs)
 }
 
 /// The lines, and all that thread mode works with.
