@@ -13,7 +13,7 @@ pub struct Timing {
     /// An axis that has not answered for so long is lost.
     pub lost: Duration,
     /// An axis that has not answered the first words of a session for so long is not there. Boards start anew when their
-    /// port is opened, and an emulator looks only once a second whether somebody has.
+    /// port is opened, and an STM32F4 takes some 5 s to solve for the gains of a commissioned observer before it listens.
     pub greeting: Duration,
     /// The control lease is renewed so often; it lasts 100 ms of axis time.
     pub renew: Duration,
@@ -28,7 +28,7 @@ impl Default for Timing {
         Self {
             repeat: Duration::from_millis(20),
             lost: Duration::from_secs(1),
-            greeting: Duration::from_secs(3),
+            greeting: Duration::from_secs(10),
             renew: Duration::from_millis(20),
             patience: Duration::from_millis(200),
             settle: Duration::from_secs(10),

@@ -37,3 +37,23 @@ fn a_tool_learns_what_the_board_is_and_how_it_stands() {
     assert!(counters.ticks > 10, "{counters:?}");
     assert_eq!((counters.late, counters.lost_records), (0, 0));
 }
+
+/// Longest time from power-on to the first answer of a board whose observer's gains are to be solved for, s: less than a
+/// tool waits for it.
+const LONGEST_BOOT_S: f64 = 10.0;
+
+#[test]
+#[ignore = "needs the image; run by cargo xtask test"]
+fn a_board_with_an_observer_answers_while_a_tool_waits_for_it() {
+    let board = Board::blank();
+    let mut tool = board.tool();
+    tool.set_word("estimator", "observer").unwrap();
+    tool.save_parameters().unwrap();
+    drop(tool);
+    let board = board.power_cycled();
+    let mut tool = board.tool();
+    let boot_s = board.with(|axis| axis.seconds());
+    println!("the first answer after {boot_s:.2} s");
+    assert_eq!(tool.tick_counters().unwrap().late, 0);
+    assert!(boot_s < LONGEST_BOOT_S, "{boot_s} s");
+}

@@ -172,8 +172,8 @@ fn a_gear_keeps_its_ratio_and_a_lost_master_ends_it() {
     let mut tool = board.tool();
     set_up(&mut tool);
     tool.edit_parameters(|edit| {
-        edit.set_parameter("gear_axis_counts", RATIO.0)?;
-        edit.set_parameter("gear_master_counts", RATIO.1)
+        edit.set_parameter("gearing.gear_axis_counts", RATIO.0)?;
+        edit.set_parameter("gearing.gear_master_counts", RATIO.1)
     })
     .unwrap();
     tool.enable().unwrap();
