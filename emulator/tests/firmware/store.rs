@@ -75,7 +75,11 @@ fn a_cut_in_the_middle_of_a_write_or_an_erasure_leaves_the_old_or_the_new() {
     const NEW: f64 = 6000.0;
     let (base, old) = before_an_erasure();
     let mut seen = Vec::new();
-    for cut_ms in [5, 15, 100, 200, 300, 700] {
+    let all = [5, 700, 15, 100, 200, 300];
+    let is_long = std::env::var_os("LEADSCREW_LONG").is_some();
+    let mut cuts = all[..if is_long { 6 } else { 2 }].to_vec();
+    cuts.sort_unstable();
+    for cut_ms in cuts {
         let board = base.power_cycled();
         let mut tool = board.tool();
         tool.set_parameter(NAME, NEW).unwrap();
@@ -85,6 +89,6 @@ fn a_cut_in_the_middle_of_a_write_or_an_erasure_leaves_the_old_or_the_new() {
         seen.push(survives(flash, old, NEW));
     }
     println!("the new one: {seen:?}");
-    assert!(!seen[0] && seen[5], "{seen:?}");
+    assert!(!seen[0] && seen[seen.len() - 1], "{seen:?}");
     assert!(seen.is_sorted(), "{seen:?}");
 }
