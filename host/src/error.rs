@@ -19,6 +19,14 @@ pub enum CommandError {
     /// A machine or a scenario file cannot be used.
     #[error(transparent)]
     TomlFile(#[from] crate::toml_file::TomlFileError),
+    /// A file says something that is not understood or not allowed.
+    #[error("{}:{complaint}", file.display())]
+    Content {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, and where.
+        complaint: leadscrew_nc::source::Complaint,
+    },
     /// A recording of an axis cannot be read.
     #[error(transparent)]
     Recorded(#[from] crate::recorded::ReadError),
@@ -68,6 +76,12 @@ impl CommandError {
     pub fn write(file: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let file = file.to_owned();
         move |reason| Self::Write { file, reason }
+    }
+
+    /// What is wrong in the text of `file`.
+    pub fn content(file: &Path) -> impl FnOnce(leadscrew_nc::source::Complaint) -> Self {
+        let file = file.to_owned();
+        move |complaint| Self::Content { file, complaint }
     }
 
     /// 2 for bad usage, 3 for an axis that was lost, 1 for another job that failed.

@@ -9,6 +9,8 @@ pub const HOST: &[&str] = &[
     "leadscrew-app",
     "board-common",
     "leadscrew-client",
+    "leadscrew-nc",
+    "leadscrew-process",
     "leadscrew-host",
     QEMU,
     EMULATOR,

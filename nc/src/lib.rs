@@ -1,0 +1,6 @@
+//! NC programs: read block by block, corrected by named terms, written back byte for byte.
+//!
+//! Lengths are mm, angles of rotary axes degrees, coordinates those of the machine unless a name says otherwise.
+#![forbid(unsafe_code)]
+
+pub mod source;

@@ -1,0 +1,114 @@
+//! What is wrong in a text, and where: the same for programs, settings and tables.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::de::DeserializeOwned;
+
+/// A place in a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, characters.
+    pub column: usize,
+}
+
+impl Place {
+    /// The place of a byte of `text`; beyond its end the place after its last character.
+    #[must_use]
+    pub fn of(text: &str, byte: usize) -> Self {
+        let mut end = byte.min(text.len());
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = &text[..end];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self {
+            line: 1 + before.matches('\n').count(),
+            column: 1 + before[line_start..].chars().count(),
+        }
+    }
+}
+
+/// What is wrong in a text: what was found, what was expected, what to do. Who knows the file puts its name and a colon in
+/// front.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Complaint {
+    /// Where.
+    pub place: Place,
+    /// What is wrong and what was expected.
+    pub message: String,
+}
+
+impl Complaint {
+    /// A complaint about a stretch of `text`.
+    #[must_use]
+    pub fn at(text: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
+        Self {
+            place: Place::of(text, span.start),
+            message: message.into(),
+        }
+    }
+}
+
+impl fmt::Display for Complaint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Place { line, column } = self.place;
+        write!(f, "{line}:{column}: {}", self.message)
+    }
+}
+
+impl std::error::Error for Complaint {}
+
+/// A TOML text as the type that derives [`serde::Deserialize`]; values whose range is checked later keep their place as
+/// [`toml::Spanned`].
+///
+/// # Errors
+/// Where the text is no TOML, or a key is missing, unknown or of another type.
+pub fn read_toml<T: DeserializeOwned>(text: &str) -> Result<T, Complaint> {
+    toml::from_str(text).map_err(|error| {
+        Complaint::at(
+            text,
+            &error.span().unwrap_or(0..0),
+            error.message().to_owned(),
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[test]
+    fn a_place_counts_lines_and_characters_from_1() {
+        let text = "aä\nbc";
+        let place = |byte| {
+            let Place { line, column } = Place::of(text, byte);
+            (line, column)
+        };
+        assert_eq!(place(0), (1, 1));
+        assert_eq!(place(2), (1, 2), "in the middle of a character");
+        assert_eq!(place(3), (1, 3));
+        assert_eq!(place(4), (2, 1));
+        assert_eq!(place(99), (2, 3));
+    }
+
+    #[test]
+    fn a_toml_error_tells_its_line_and_column() {
+        #[derive(Debug, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct File {
+            _length_mm: f64,
+        }
+        let error = read_toml::<File>("_length_mm = 1.0\n  widht_mm = 2.0\n").unwrap_err();
+        assert_eq!(error.place, Place { line: 2, column: 3 });
+        assert!(
+            error.to_string().starts_with("2:3: unknown field"),
+            "{error}"
+        );
+        assert!(read_toml::<File>("_length_mm = 1.0").is_ok());
+    }
+}
