@@ -1,0 +1,243 @@
+//! What is added to a programmed place: named terms, summed into one correction K.
+//!
+//! K = −Δ, where Δ is measured less planned coordinate: a term states what the machine, the tool or the workpiece does wrong,
+//! and K undoes it.
+
+mod error;
+pub mod grid;
+
+use std::fmt::Debug;
+
+pub use error::{TermError, Trouble};
+
+use crate::coordinates::{AXES, Axis, AxisSet, Coordinates};
+
+/// Which way an axis came to where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Towards larger coordinates.
+    Up,
+    /// Towards smaller coordinates.
+    Down,
+}
+
+/// For each axis the direction of its last movement; none before it has moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Approach([Option<Direction>; AXES]);
+
+impl Approach {
+    /// Nothing has moved yet.
+    pub const UNKNOWN: Self = Self([None; AXES]);
+
+    /// The direction of an axis.
+    #[must_use]
+    pub fn of(&self, axis: Axis) -> Option<Direction> {
+        self.0[axis.index()]
+    }
+
+    /// With the direction of one axis set.
+    #[must_use]
+    pub fn with(mut self, axis: Axis, direction: Direction) -> Self {
+        self.0[axis.index()] = Some(direction);
+        self
+    }
+
+    /// After a movement by a difference: axes that did not move keep their direction.
+    #[must_use]
+    pub fn after(mut self, by: &Coordinates) -> Self {
+        for (axis, difference) in by.iter() {
+            if difference > 0.0 {
+                self = self.with(axis, Direction::Up);
+            } else if difference < 0.0 {
+                self = self.with(axis, Direction::Down);
+            }
+        }
+        self
+    }
+}
+
+/// What a correction may depend on besides the place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Circumstances {
+    /// Number of the tool in use; none where unknown.
+    pub tool: Option<u32>,
+    /// Place of the control point less place of the tool's tip, as the offset in force makes the control move (0 with no
+    /// tool offset in force); none where unknown.
+    pub tool_offset: Option<Coordinates>,
+    /// From where each axis came.
+    pub approach: Approach,
+}
+
+/// How K depends on the place; what a line and an arc become follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Shape {
+    /// K = 0 everywhere.
+    None,
+    /// The same K everywhere: a line stays a line and an arc an arc. It may change with the tool.
+    Constant,
+    /// K = K0 + A·Y: a line stays a line.
+    Affine,
+    /// Anything else: lines may have to be split.
+    Curved,
+}
+
+/// Bounds on how fast K changes with the place, for chord errors: over the part of the place that the term depends on, mm (or
+/// degrees) of K, as the length of the vector of all corrected axes, for a mm (or degree) of place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steepness {
+    /// Largest |dK/ds| along any direction.
+    pub slope: f64,
+    /// Largest |d²K/ds²| along any direction between breaks, per mm.
+    pub bend: f64,
+}
+
+/// One cause of deviations. Along a straight line K is a polynomial of at most third degree between the breaks.
+pub trait Term: Debug + Send + Sync {
+    /// What messages and reports call it.
+    fn name(&self) -> &str;
+
+    /// K at a place of the control point in machine coordinates.
+    ///
+    /// # Errors
+    /// Where the place lies outside of a table, or what the term needs to know is unknown.
+    fn correction(&self, at: &Coordinates, with: &Circumstances) -> Result<Coordinates, TermError>;
+
+    /// Axes it can correct.
+    fn corrects(&self) -> AxisSet;
+
+    /// Axes on whose place it depends.
+    fn depends_on(&self) -> AxisSet;
+
+    /// Axes on whose direction of approach it depends.
+    fn depends_on_approach_of(&self) -> AxisSet {
+        AxisSet::NONE
+    }
+
+    /// True where it depends on the tool or its offset.
+    fn depends_on_tool(&self) -> bool {
+        false
+    }
+
+    /// How K depends on the place.
+    fn shape(&self) -> Shape;
+
+    /// Places of an axis between which K is smooth, rising, in machine coordinates at the circumstances given.
+    fn breaks(&self, _axis: Axis, _with: &Circumstances) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// How fast K changes.
+    fn steepness(&self) -> Steepness;
+}
+
+/// Named terms, summed.
+#[derive(Debug, Default)]
+pub struct Terms {
+    list: Vec<Box<dyn Term>>,
+}
+
+impl Terms {
+    /// No correction: K = 0 everywhere.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { list: Vec::new() }
+    }
+
+    /// With one term more.
+    #[must_use]
+    pub fn with(mut self, term: impl Term + 'static) -> Self {
+        self.list.push(Box::new(term));
+        self
+    }
+
+    /// K at a place of the tool's control point in machine coordinates: to be added to the programmed coordinates.
+    ///
+    /// # Errors
+    /// As [`Term::correction`]: there is no extrapolation beyond a table.
+    pub fn correction(
+        &self,
+        at: &Coordinates,
+        with: &Circumstances,
+    ) -> Result<Coordinates, TermError> {
+        self.list.iter().try_fold(Coordinates::ZERO, |sum, term| {
+            Ok(sum + term.correction(at, with)?)
+        })
+    }
+
+    /// Every term's own K at a place, by name: for reports.
+    ///
+    /// # Errors
+    /// As [`Terms::correction`].
+    pub fn each<'a>(
+        &'a self,
+        at: &Coordinates,
+        with: &Circumstances,
+    ) -> Result<Vec<(&'a str, Coordinates)>, TermError> {
+        self.list
+            .iter()
+            .map(|term| Ok((term.name(), term.correction(at, with)?)))
+            .collect()
+    }
+
+    /// The terms.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Term> {
+        self.list.iter().map(AsRef::as_ref)
+    }
+
+    /// Axes that any term can correct: the words that may be changed or added.
+    #[must_use]
+    pub fn corrects(&self) -> AxisSet {
+        self.union(|term| term.corrects())
+    }
+
+    /// Axes on whose place any term depends: what must be known.
+    #[must_use]
+    pub fn depends_on(&self) -> AxisSet {
+        self.union(|term| term.depends_on())
+    }
+
+    /// Axes on whose direction of approach any term depends: there K jumps where the axis turns round.
+    #[must_use]
+    pub fn depends_on_approach_of(&self) -> AxisSet {
+        self.union(|term| term.depends_on_approach_of())
+    }
+
+    /// True where any term depends on the tool or its offset.
+    #[must_use]
+    pub fn depends_on_tool(&self) -> bool {
+        self.iter().any(Term::depends_on_tool)
+    }
+
+    /// How the sum depends on the place.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        self.iter().map(Term::shape).max().unwrap_or(Shape::None)
+    }
+
+    /// Places of an axis between which K is smooth, rising, none twice.
+    #[must_use]
+    pub fn breaks(&self, axis: Axis, with: &Circumstances) -> Vec<f64> {
+        let mut all: Vec<f64> = self
+            .iter()
+            .flat_map(|term| term.breaks(axis, with))
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
+    /// How fast the sum changes.
+    #[must_use]
+    pub fn steepness(&self) -> Steepness {
+        self.iter()
+            .map(Term::steepness)
+            .fold(Steepness::default(), |sum, one| Steepness {
+                slope: sum.slope + one.slope,
+                bend: sum.bend + one.bend,
+            })
+    }
+
+    fn union(&self, of: impl Fn(&dyn Term) -> AxisSet) -> AxisSet {
+        self.iter().map(of).fold(AxisSet::NONE, AxisSet::union)
+    }
+}
