@@ -3,3 +3,5 @@
 //! Lengths are mm, angles rad, unless a name says otherwise; a deviation is measured less planned *coordinate*, positive along
 //! its axis, and an angle a right-handed rotation.
 #![forbid(unsafe_code)]
+
+pub mod deviations;

@@ -1,4 +1,4 @@
-//! A table of corrections on a grid over one to three coordinates, linear between the nodes: P4's tables that "set the
+//! A table of corrections on a grid over one to four coordinates, linear between the nodes: P4's tables that "set the
 //! corrections against the values of the controlled coordinates".
 
 mod file;
@@ -49,7 +49,7 @@ pub struct Grid {
 }
 
 /// Coordinates of a grid at most.
-pub const MAX_OVER: usize = 3;
+pub const MAX_OVER: usize = 4;
 /// Nodes of a grid at most: 100 in each of three coordinates.
 pub const MAX_NODES: usize = 1_000_000;
 
