@@ -50,6 +50,9 @@ pub struct Grid {
 
 /// Coordinates of a grid at most.
 pub const MAX_OVER: usize = 4;
+/// Of these at most so many may change K, which keeps it of third degree along a line; one more says at which place of an axis
+/// the table holds.
+pub const MAX_VARYING: usize = 3;
 /// Nodes of a grid at most: 100 in each of three coordinates.
 pub const MAX_NODES: usize = 1_000_000;
 
@@ -76,6 +79,11 @@ impl Grid {
             steepness: Steepness::default(),
         };
         grid.steepness = interpolate::steepness(&grid);
+        if interpolate::varying(&grid) > MAX_VARYING {
+            return Err(format!(
+                "the corrections change with more than {MAX_VARYING} coordinates: make a table for each place of one of them"
+            ));
+        }
         Ok(grid)
     }
 

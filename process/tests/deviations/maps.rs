@@ -107,6 +107,16 @@ fn a_table_holds_where_it_was_made() {
     assert!(short.to_string().contains("tool offset"), "{short}");
 }
 
+/// K over four coordinates would be of fourth degree along a line: there is a table for each place of the rotary table instead.
+#[test]
+fn a_table_over_four_moving_axes_is_refused() {
+    let machine = machine("6904MF2");
+    let error = machine
+        .corrections(&Coordinates::ZERO, machine.evenly(&[], 3), 1e-3)
+        .unwrap_err();
+    assert!(error.contains("more than 3 coordinates"), "{error}");
+}
+
 #[test]
 fn a_table_goes_through_its_file() {
     let lathe = machine("lathe").without_drive_errors();
