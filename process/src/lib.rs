@@ -4,4 +4,5 @@
 //! its axis, and an angle a right-handed rotation.
 #![forbid(unsafe_code)]
 
+pub mod deviations;
 pub mod plan;

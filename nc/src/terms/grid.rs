@@ -1,4 +1,4 @@
-//! A table of corrections on a grid over one to three coordinates, linear between the nodes: P4's tables that "set the
+//! A table of corrections on a grid over one to four coordinates, linear between the nodes: P4's tables that "set the
 //! corrections against the values of the controlled coordinates".
 
 mod file;
@@ -49,7 +49,10 @@ pub struct Grid {
 }
 
 /// Coordinates of a grid at most.
-pub const MAX_OVER: usize = 3;
+pub const MAX_OVER: usize = 4;
+/// Of these at most so many may change K, which keeps it of third degree along a line; one more says at which place of an axis
+/// the table holds.
+pub const MAX_VARYING: usize = 3;
 /// Nodes of a grid at most: 100 in each of three coordinates.
 pub const MAX_NODES: usize = 1_000_000;
 
@@ -76,6 +79,11 @@ impl Grid {
             steepness: Steepness::default(),
         };
         grid.steepness = interpolate::steepness(&grid);
+        if interpolate::varying(&grid) > MAX_VARYING {
+            return Err(format!(
+                "the corrections change with more than {MAX_VARYING} coordinates: make a table for each place of one of them"
+            ));
+        }
         Ok(grid)
     }
 

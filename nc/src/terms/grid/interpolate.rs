@@ -80,6 +80,13 @@ pub(super) fn steepness(grid: &Grid) -> Steepness {
     }
 }
 
+/// Of how many coordinates K is no constant.
+pub(super) fn varying(grid: &Grid) -> usize {
+    (0..grid.over.len())
+        .filter(|i| largest(grid, &[*i]) > 0.0)
+        .count()
+}
+
 /// The largest divided difference over one or two of the coordinates.
 fn largest(grid: &Grid, by: &[usize]) -> f64 {
     let lengths: Vec<usize> = grid.over.iter().map(|one| one.places.len()).collect();

@@ -1,0 +1,293 @@
+//! A setting vector as it follows the coordinate: tables, linear between their places, and functions, added up.
+
+use std::f64::consts::TAU;
+use std::ops::Add;
+
+use super::setting::{Component, SettingVector};
+
+/// A setting vector given at places, linear between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    places: Vec<f64>,
+    values: Vec<SettingVector>,
+    full_turn: bool,
+}
+
+impl Table {
+    /// A table from its places (mm or degrees, rising) and the vectors there. One of a rotary unit whose ends lie a full turn
+    /// apart goes round without end.
+    ///
+    /// # Errors
+    /// What is wrong with the numbers, in words.
+    pub fn new(places: Vec<f64>, values: Vec<SettingVector>, rotary: bool) -> Result<Self, String> {
+        if places.len() < 2 {
+            return Err(format!(
+                "a table needs two places or more, found {}",
+                places.len()
+            ));
+        }
+        if places.len() != values.len() {
+            return Err(format!(
+                "{} values for {} places: one for each is needed",
+                values.len(),
+                places.len()
+            ));
+        }
+        let finite = places
+            .iter()
+            .copied()
+            .chain(values.iter().flat_map(|v| v.to_array()));
+        if let Some(value) = finite.into_iter().find(|value| !value.is_finite()) {
+            return Err(format!(
+                "a number of the table is {value}: it must be finite"
+            ));
+        }
+        if let Some(pair) = places.windows(2).find(|pair| pair[0] >= pair[1]) {
+            return Err(format!(
+                "the places must rise from one to the next: {} follows {}",
+                pair[1], pair[0]
+            ));
+        }
+        let length = places[places.len() - 1] - places[0];
+        let full_turn = rotary && (length - 360.0).abs() < 1e-9;
+        if rotary && length > 360.0 + 1e-9 {
+            return Err(format!(
+                "the places go over {length} degrees: a full turn at most"
+            ));
+        }
+        if full_turn && values[0] != values[values.len() - 1] {
+            return Err(
+                "the last place is the first after a full turn, and its values differ".to_owned(),
+            );
+        }
+        Ok(Self {
+            places,
+            values,
+            full_turn,
+        })
+    }
+
+    /// First and last place; without end for a table of a full turn.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        if self.full_turn {
+            return (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        (self.places[0], self.places[self.places.len() - 1])
+    }
+
+    /// Its places.
+    #[must_use]
+    pub fn places(&self) -> &[f64] {
+        &self.places
+    }
+
+    /// The vectors at its places.
+    #[must_use]
+    pub fn values(&self) -> &[SettingVector] {
+        &self.values
+    }
+
+    /// The vector at a place; beyond the ends that of the end.
+    fn at(&self, place: f64) -> SettingVector {
+        let first = self.places[0];
+        let place = if self.full_turn {
+            first + (place - first).rem_euclid(360.0)
+        } else {
+            place
+        };
+        let above = self.places.partition_point(|&one| one <= place);
+        let high = above.clamp(1, self.places.len() - 1);
+        let (low_place, high_place) = (self.places[high - 1], self.places[high]);
+        let part = ((place - low_place) / (high_place - low_place)).clamp(0.0, 1.0);
+        self.values[high - 1] * (1.0 - part) + self.values[high] * part
+    }
+
+    /// Mean over its places.
+    fn mean(&self) -> SettingVector {
+        let mut sum = SettingVector::ZERO;
+        for (places, values) in self.places.windows(2).zip(self.values.windows(2)) {
+            sum += (values[0] + values[1]) * (0.5 * (places[1] - places[0]));
+        }
+        sum * (1.0 / (self.places[self.places.len() - 1] - self.places[0]))
+    }
+}
+
+/// A sine over the coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// mm or rad.
+    pub amplitude: f64,
+    /// mm, or degrees for a rotary unit: there a whole part of 360.
+    pub period: f64,
+    /// Degrees of the wave at the coordinate 0.
+    pub phase_deg: f64,
+}
+
+/// One parameter as a function of the coordinate: constant, slope and waves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    /// The parameter.
+    pub component: Component,
+    /// At the coordinate 0, waves apart; mm or rad.
+    pub constant: f64,
+    /// mm or rad for each mm of the coordinate; 0 for a rotary unit.
+    pub slope: f64,
+    /// Waves.
+    pub waves: Vec<Wave>,
+}
+
+impl Function {
+    fn at(&self, place: f64) -> f64 {
+        let wave = |wave: &Wave| {
+            wave.amplitude * (TAU * place / wave.period + wave.phase_deg.to_radians()).sin()
+        };
+        self.constant + self.slope * place + self.waves.iter().map(wave).sum::<f64>()
+    }
+}
+
+/// How the setting vector of a unit follows its coordinate.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Law {
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// Functions.
+    pub functions: Vec<Function>,
+}
+
+impl Law {
+    /// A unit without deviations.
+    pub const NONE: Self = Self {
+        tables: Vec::new(),
+        functions: Vec::new(),
+    };
+
+    /// The law of one table.
+    #[must_use]
+    pub fn table(table: Table) -> Self {
+        Self {
+            tables: vec![table],
+            functions: Vec::new(),
+        }
+    }
+
+    /// The setting vector at a place, mm or degrees; beyond the end of a table that of its end.
+    #[must_use]
+    pub fn at(&self, place: f64) -> SettingVector {
+        let tables = self.tables.iter().map(|table| table.at(place));
+        let functions = self
+            .functions
+            .iter()
+            .map(|one| SettingVector::ZERO.with(one.component, one.at(place)));
+        tables.chain(functions).fold(SettingVector::ZERO, Add::add)
+    }
+
+    /// Its mean over a revolution, for a rotary unit: waves of whole parts of a turn leave nothing.
+    #[must_use]
+    pub fn mean(&self) -> SettingVector {
+        let tables = self.tables.iter().map(Table::mean);
+        let functions = self
+            .functions
+            .iter()
+            .map(|one| SettingVector::ZERO.with(one.component, one.constant));
+        tables.chain(functions).fold(SettingVector::ZERO, Add::add)
+    }
+
+    /// The stretch over which all its tables are known.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        self.tables
+            .iter()
+            .map(Table::range)
+            .fold((f64::NEG_INFINITY, f64::INFINITY), |all, one| {
+                (all.0.max(one.0), all.1.min(one.1))
+            })
+    }
+
+    /// The law without one parameter.
+    #[must_use]
+    pub fn without(&self, component: Component) -> Self {
+        let mut law = self.clone();
+        for value in law.tables.iter_mut().flat_map(|table| &mut table.values) {
+            *value = value.with(component, 0.0);
+        }
+        law.functions.retain(|one| one.component != component);
+        law
+    }
+
+    /// True where a parameter is other than 0 somewhere.
+    #[must_use]
+    pub fn has(&self, component: Component) -> bool {
+        let tables = self.tables.iter().flat_map(|table| &table.values);
+        tables
+            .map(|value| value.get(component))
+            .any(|value| value != 0.0)
+            || self.functions.iter().any(|one| one.component == component)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn b_of(values: &[f64]) -> Vec<SettingVector> {
+        let vector = |&b: &f64| SettingVector::ZERO.with(Component::B, b);
+        values.iter().map(vector).collect()
+    }
+
+    #[test]
+    fn a_table_is_linear_between_its_places() {
+        let table = Table::new(vec![0.0, 10.0, 30.0], b_of(&[1.0, 2.0, -2.0]), false).unwrap();
+        let b = |place| table.at(place).shift.y;
+        assert_eq!(
+            [b(0.0), b(5.0), b(10.0), b(20.0), b(30.0)],
+            [1.0, 1.5, 2.0, 0.0, -2.0]
+        );
+    }
+
+    #[test]
+    fn a_table_of_a_full_turn_goes_round() {
+        let places = vec![0.0, 90.0, 180.0, 270.0, 360.0];
+        let table = Table::new(places, b_of(&[0.0, 1.0, 0.0, 3.0, 0.0]), true).unwrap();
+        assert_eq!(table.at(-45.0), table.at(315.0));
+        assert_eq!(table.at(-45.0).shift.y, 1.5);
+        assert_eq!(table.at(360.0 + 90.0).shift.y, 1.0);
+        assert_eq!(table.mean().shift.y, 1.0);
+    }
+
+    #[test]
+    fn tables_that_cannot_be_are_refused() {
+        let new = |places: &[f64], rotary| {
+            let values = vec![SettingVector::ZERO; places.len()];
+            Table::new(places.to_vec(), values, rotary).unwrap_err()
+        };
+        assert!(new(&[1.0], false).contains("two places"));
+        assert!(new(&[1.0, 1.0], false).contains("must rise"));
+        assert!(new(&[0.0, f64::NAN], false).contains("finite"));
+        assert!(new(&[0.0, 400.0], true).contains("full turn"));
+        let open = Table::new(vec![0.0, 360.0], b_of(&[0.0, 1.0]), true).unwrap_err();
+        assert!(open.contains("values differ"), "{open}");
+    }
+
+    #[test]
+    fn the_mean_of_a_revolution_keeps_the_constant_only() {
+        let wave = Wave {
+            amplitude: 2.0,
+            period: 120.0,
+            phase_deg: 30.0,
+        };
+        let law = Law {
+            functions: vec![Function {
+                component: Component::C,
+                constant: 0.5,
+                slope: 0.0,
+                waves: vec![wave],
+            }],
+            ..Law::NONE
+        };
+        let sum: f64 = (0..360).map(|deg| law.at(f64::from(deg)).shift.z).sum();
+        assert!((sum / 360.0 - law.mean().shift.z).abs() < 1e-12);
+        assert_eq!(law.at(0.0).shift.z, 0.5 + 2.0 * 30f64.to_radians().sin());
+        assert!(law.has(Component::C) && !law.without(Component::C).has(Component::C));
+    }
+}
