@@ -3,6 +3,7 @@
 //! Lengths are mm, angles of rotary axes degrees, coordinates those of the machine unless a name says otherwise.
 #![forbid(unsafe_code)]
 
+pub mod block;
 pub mod coordinates;
 pub mod source;
 pub mod terms;
