@@ -4,6 +4,8 @@
 #![forbid(unsafe_code)]
 
 pub mod block;
+pub mod checks;
 pub mod coordinates;
+pub mod path;
 pub mod source;
 pub mod terms;
