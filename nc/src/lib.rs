@@ -5,5 +5,7 @@
 
 pub mod block;
 pub mod coordinates;
+pub mod dialect;
+pub mod machine_state;
 pub mod source;
 pub mod terms;
