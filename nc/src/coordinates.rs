@@ -184,11 +184,15 @@ impl Coordinates {
         self
     }
 
-    /// The place a fraction of the way to another: 0 here, 1 there.
+    /// The place a fraction (0 to 1) of the way to another: 0 here, 1 there. Never beyond either by rounding, so what lies
+    /// between places of a table lies in the table.
     #[must_use]
     pub fn towards(&self, other: &Self, fraction: f64) -> Self {
         Self(std::array::from_fn(|i| {
-            (1.0 - fraction) * self.0[i] + fraction * other.0[i]
+            let (a, b) = (self.0[i], other.0[i]);
+            ((1.0 - fraction) * a + fraction * b)
+                .max(a.min(b))
+                .min(a.max(b))
         }))
     }
 
@@ -297,5 +301,9 @@ mod tests {
         assert_eq!((b - a)[Axis::Z], -4.0);
         assert_eq!(Coordinates::xyz(3.0, 4.0, 0.0).length_mm(), 5.0);
         assert_eq!(a.towards(&b, 1.0), b);
+        let still = Coordinates::xyz(0.1, 0.0, 0.0);
+        for i in 0..100 {
+            assert_eq!(still.towards(&still, f64::from(i) / 99.0), still);
+        }
     }
 }

@@ -4,6 +4,10 @@
 #![forbid(unsafe_code)]
 
 pub mod block;
+pub mod checks;
 pub mod coordinates;
+pub mod path;
+pub mod dialect;
+pub mod machine_state;
 pub mod source;
 pub mod terms;

@@ -212,11 +212,11 @@ impl Scanner<'_> {
         let rest: &[u8] = &self.text[self.at..];
         let mut visible = rest.iter().enumerate();
         let mut next = || visible.find(|(_, byte)| !matches!(byte, b' ' | b'\t'));
-        if next().is_some_and(|(_, byte)| *byte == b'/') {
-            if let Some((bracket, b'[')) = next() {
-                self.at += bracket;
-                return self.brackets();
-            }
+        if next().is_some_and(|(_, byte)| *byte == b'/')
+            && let Some((bracket, b'[')) = next()
+        {
+            self.at += bracket;
+            return self.brackets();
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ mod interpolate;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Circumstances, Shape, Steepness, Term, TermError, Trouble};
+use super::{Circumstances, Region, Shape, Steepness, Term, TermError, Trouble};
 use crate::coordinates::{Axis, AxisSet, Coordinates};
 use file::GridFile;
 
@@ -213,7 +213,7 @@ impl Term for Grid {
             .map_or_else(Vec::new, |one| one.places.clone())
     }
 
-    fn steepness(&self) -> Steepness {
+    fn steepness(&self, _: &Region) -> Steepness {
         self.steepness
     }
 }
@@ -339,7 +339,7 @@ correct = [{ axis = "Z", values_mm = [0.0, 0.01, 0.02, 0.10, 0.11, 0.13] }]
     #[test]
     fn its_steepness_is_that_of_its_cells() {
         let grid: Grid = read_toml(TOML).unwrap();
-        let Steepness { slope, bend } = grid.steepness();
+        let Steepness { slope, bend } = grid.steepness;
         let expected = (0.11_f64 / 100.0).hypot(0.02 / 90.0);
         assert!((slope - expected).abs() < 1e-15, "{slope}");
         let twist = (0.13 - 0.11 - (0.02 - 0.01)) / (100.0 * 90.0);

@@ -3,14 +3,30 @@
 //! K = −Δ, where Δ is measured less planned coordinate: a term states what the machine, the tool or the workpiece does wrong,
 //! and K undoes it.
 
+pub mod affine;
 mod error;
 pub mod grid;
+pub mod screw;
+mod table;
+pub mod thermal;
+pub mod wear;
+pub mod workpiece;
 
 use std::fmt::Debug;
 
 pub use error::{TermError, Trouble};
 
 use crate::coordinates::{AXES, Axis, AxisSet, Coordinates};
+
+/// So far beyond the ends of a table, mm or degrees, its end still counts: rounding of a sum puts a place there, no program does.
+const ROUNDING: f64 = 1e-6;
+
+/// A value within a table's range, rounding put right; none beyond it, or where it is no number.
+fn in_range(value: f64, (first, last): (f64, f64)) -> Option<f64> {
+    (first - ROUNDING..=last + ROUNDING)
+        .contains(&value)
+        .then(|| value.max(first).min(last))
+}
 
 /// Which way an axis came to where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,17 +97,51 @@ pub enum Shape {
     Curved,
 }
 
-/// Bounds on how fast K changes with the place, for chord errors: over the part of the place that the term depends on, mm (or
-/// degrees) of K, as the length of the vector of all corrected axes, for a mm (or degree) of place.
+/// A box of places: a path lies within it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// Lowest coordinates.
+    pub low: Coordinates,
+    /// Highest coordinates.
+    pub high: Coordinates,
+}
+
+impl Region {
+    /// The smallest box around two places.
+    #[must_use]
+    pub fn around(one: &Coordinates, other: &Coordinates) -> Self {
+        let pick = |of: fn(f64, f64) -> f64| {
+            one.iter()
+                .map(|(axis, value)| (axis, of(value, other[axis])))
+                .collect()
+        };
+        Self {
+            low: pick(f64::min),
+            high: pick(f64::max),
+        }
+    }
+
+    /// Largest distance of its places from a coordinate.
+    #[must_use]
+    pub fn farthest_from(&self, axis: Axis, datum: f64) -> f64 {
+        (self.low[axis] - datum)
+            .abs()
+            .max((self.high[axis] - datum).abs())
+    }
+}
+
+/// Bounds on how fast K changes with the place, for chord errors. K is taken as the length of the vector of all corrected
+/// axes, the way as that over all axes, mm and degrees alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Steepness {
     /// Largest |dK/ds| along any direction.
     pub slope: f64,
-    /// Largest |d²K/ds²| along any direction between breaks, per mm.
+    /// Largest |d²K/ds²| along any straight way between breaks, per mm.
     pub bend: f64,
 }
 
-/// One cause of deviations. Along a straight line K is a polynomial of at most third degree between the breaks.
+/// One cause of deviations. Along a straight line K is a polynomial of at most third degree between the breaks: on that the
+/// bound of [`crate::path`] rests.
 pub trait Term: Debug + Send + Sync {
     /// What messages and reports call it.
     fn name(&self) -> &str;
@@ -126,8 +176,8 @@ pub trait Term: Debug + Send + Sync {
         Vec::new()
     }
 
-    /// How fast K changes.
-    fn steepness(&self) -> Steepness;
+    /// How fast K changes within a region.
+    fn steepness(&self, within: &Region) -> Steepness;
 }
 
 /// Named terms, summed.
@@ -146,8 +196,18 @@ impl Terms {
     /// With one term more.
     #[must_use]
     pub fn with(mut self, term: impl Term + 'static) -> Self {
-        self.list.push(Box::new(term));
+        self.push(Box::new(term));
         self
+    }
+
+    /// Adds a term.
+    pub fn push(&mut self, term: Box<dyn Term>) {
+        self.list.push(term);
+    }
+
+    /// Takes over the terms of another.
+    pub fn append(&mut self, mut other: Self) {
+        self.list.append(&mut other.list);
     }
 
     /// K at a place of the tool's control point in machine coordinates: to be added to the programmed coordinates.
@@ -226,11 +286,11 @@ impl Terms {
         all
     }
 
-    /// How fast the sum changes.
+    /// How fast the sum changes within a region.
     #[must_use]
-    pub fn steepness(&self) -> Steepness {
+    pub fn steepness(&self, within: &Region) -> Steepness {
         self.iter()
-            .map(Term::steepness)
+            .map(|term| term.steepness(within))
             .fold(Steepness::default(), |sum, one| Steepness {
                 slope: sum.slope + one.slope,
                 bend: sum.bend + one.bend,

@@ -1,6 +1,6 @@
 //! Multilinear interpolation, and how steep it can be.
 
-use super::super::{Steepness, TermError, Trouble};
+use super::super::{Steepness, TermError, Trouble, in_range};
 use super::{Grid, GridAxis, MAX_OVER};
 use crate::coordinates::Coordinates;
 
@@ -26,9 +26,7 @@ pub(super) fn correction(grid: &Grid, at: &Coordinates) -> Result<Coordinates, T
 
 fn locate(one: &GridAxis, value: f64) -> Option<Cell> {
     let (first, last) = (one.places.first()?, one.places.last()?);
-    if !(*first..=*last).contains(&value) {
-        return None;
-    }
+    let value = in_range(value, (*first, *last))?;
     let upper = one.places.partition_point(|place| *place <= value);
     let lower = upper.min(one.places.len() - 1) - 1;
     let (a, b) = (one.places[lower], one.places[lower + 1]);

@@ -1,0 +1,258 @@
+//! The screw map: what a drive's own positioning is off at places of its travel, having come from below and from above.
+//!
+//! In TOML, a point a table, as the on-board screw table and the scenarios of `leadscrew sim` have it:
+//! `[[screw]]` with `position_mm`, `forward_um` (carriage less place, reached towards larger coordinates) and `backward_um`
+//! (towards smaller; left out: the same). K = −error.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::table::Table;
+use super::{Circumstances, Direction, Region, Shape, Steepness, Term, TermError, Trouble};
+use crate::checks::{FARTHEST, within};
+use crate::coordinates::{Axis, AxisSet, Coordinates};
+use crate::source::Complaint;
+
+/// Largest error of a screw that is believed, µm.
+const LARGEST_UM: f64 = 10_000.0;
+
+/// A point as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointFile {
+    position_mm: Spanned<f64>,
+    forward_um: Spanned<f64>,
+    backward_um: Option<Spanned<f64>>,
+}
+
+/// A file of nothing but points.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScrewFile {
+    screw: Vec<PointFile>,
+}
+
+/// The screw map of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScrewMap {
+    name: String,
+    axis: Axis,
+    /// Errors in mm, having come towards larger and towards smaller coordinates.
+    forward: Table,
+    backward: Table,
+}
+
+impl ScrewMap {
+    /// A map from points (place, error coming upward, error coming downward), mm; degrees for a rotary axis.
+    ///
+    /// # Errors
+    /// What is wrong with the numbers, in words.
+    pub fn new(
+        name: impl Into<String>,
+        axis: Axis,
+        points: &[(f64, f64, f64)],
+    ) -> Result<Self, String> {
+        let table = |error: fn(&(f64, f64, f64)) -> f64| {
+            Table::new(
+                axis,
+                points.iter().map(|point| point.0).collect(),
+                points.iter().map(error).collect(),
+            )
+        };
+        Ok(Self {
+            name: name.into(),
+            axis,
+            forward: table(|point| point.1)?,
+            backward: table(|point| point.2)?,
+        })
+    }
+
+    /// A map from a file of points.
+    ///
+    /// # Errors
+    /// What is wrong in the text, and where.
+    pub fn read(name: &str, axis: Axis, text: &str) -> Result<Self, Complaint> {
+        let file: ScrewFile = crate::source::read_toml(text)?;
+        Self::from_points(name, axis, text, &file.screw)
+    }
+
+    /// A map from the points of a text.
+    ///
+    /// # Errors
+    /// What is wrong in the text, and where.
+    pub fn from_points(
+        name: &str,
+        axis: Axis,
+        text: &str,
+        points: &[PointFile],
+    ) -> Result<Self, Complaint> {
+        let error = |key: &str, value: &Spanned<f64>| {
+            within(text, key, value, (-LARGEST_UM, LARGEST_UM), "um").map(|um| um / 1000.0)
+        };
+        let mut checked: Vec<(f64, f64, f64)> = Vec::new();
+        for point in points {
+            let at = within(
+                text,
+                "position_mm",
+                &point.position_mm,
+                (-FARTHEST, FARTHEST),
+                "mm",
+            )?;
+            let forward = error("forward_um", &point.forward_um)?;
+            let backward = match &point.backward_um {
+                Some(value) => error("backward_um", value)?,
+                None => forward,
+            };
+            if checked.last().is_some_and(|(last, ..)| *last >= at) {
+                return Err(Complaint::at(
+                    text,
+                    &point.position_mm.span(),
+                    format!(
+                        "position_mm = {at} mm is not above the one before: the points must rise"
+                    ),
+                ));
+            }
+            checked.push((at, forward, backward));
+        }
+        Self::new(name, axis, &checked).map_err(|message| {
+            let span = points
+                .first()
+                .map_or(0..0, |point| point.position_mm.span());
+            Complaint::at(text, &span, format!("the screw map of {axis}: {message}"))
+        })
+    }
+
+    /// Its axis.
+    #[must_use]
+    pub fn axis(&self) -> Axis {
+        self.axis
+    }
+
+    fn is_directional(&self) -> bool {
+        self.forward != self.backward
+    }
+}
+
+impl Term for ScrewMap {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn correction(&self, at: &Coordinates, with: &Circumstances) -> Result<Coordinates, TermError> {
+        let table = match with.approach.of(self.axis) {
+            Some(Direction::Down) => &self.backward,
+            None if self.is_directional() => {
+                return Err(TermError {
+                    term: self.name.clone(),
+                    trouble: Trouble::ApproachUnknown { axis: self.axis },
+                });
+            }
+            _ => &self.forward,
+        };
+        let error = table.at(at[self.axis], &self.name)?;
+        Ok(Coordinates::ZERO.with(self.axis, -error))
+    }
+
+    fn corrects(&self) -> AxisSet {
+        AxisSet::of(self.axis)
+    }
+
+    fn depends_on(&self) -> AxisSet {
+        AxisSet::of(self.axis)
+    }
+
+    fn depends_on_approach_of(&self) -> AxisSet {
+        if self.is_directional() {
+            AxisSet::of(self.axis)
+        } else {
+            AxisSet::NONE
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        if self.forward.largest() == 0.0 && self.backward.largest() == 0.0 {
+            Shape::None
+        } else {
+            Shape::Curved
+        }
+    }
+
+    fn breaks(&self, axis: Axis, _: &Circumstances) -> Vec<f64> {
+        if axis == self.axis {
+            self.forward.places().to_vec()
+        } else {
+            Vec::new()
+        }
+    }
+
+    fn steepness(&self, _: &Region) -> Steepness {
+        Steepness {
+            slope: self.forward.steepest().max(self.backward.steepest()),
+            bend: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Approach;
+    use super::*;
+
+    const TEXT: &str = "[[screw]]\nposition_mm = 0\nforward_um = 0\nbackward_um = 8\n\
+                        [[screw]]\nposition_mm = 100\nforward_um = 10\nbackward_um = 20\n";
+
+    fn coming(direction: Direction) -> Circumstances {
+        Circumstances {
+            approach: Approach::UNKNOWN.with(Axis::Z, direction),
+            ..Circumstances::default()
+        }
+    }
+
+    #[test]
+    fn it_undoes_the_error_of_the_direction_it_came_from() {
+        let map = ScrewMap::read("screw Z", Axis::Z, TEXT).unwrap();
+        let at = Coordinates::xyz(0.0, 0.0, 25.0);
+        let k = |with| map.correction(&at, &with).map(|k| k[Axis::Z]);
+        assert!((k(coming(Direction::Up)).unwrap() + 0.0025).abs() < 1e-15);
+        assert!((k(coming(Direction::Down)).unwrap() + 0.011).abs() < 1e-15);
+        let unknown = k(Circumstances::default()).unwrap_err().to_string();
+        assert!(unknown.contains("from which side Z came"), "{unknown}");
+        assert_eq!(map.depends_on_approach_of(), AxisSet::of(Axis::Z));
+    }
+
+    #[test]
+    fn one_error_for_both_directions_needs_no_direction() {
+        let text = TEXT
+            .replace("backward_um = 8\n", "")
+            .replace("backward_um = 20\n", "");
+        let map = ScrewMap::read("screw Z", Axis::Z, &text).unwrap();
+        let at = Coordinates::xyz(0.0, 0.0, 25.0);
+        let k = map.correction(&at, &Circumstances::default()).unwrap();
+        assert!((k[Axis::Z] + 0.0025).abs() < 1e-15);
+        assert!(map.depends_on_approach_of().is_empty());
+    }
+
+    #[test]
+    fn bad_points_are_refused_at_their_place() {
+        for (from, to, message) in [
+            (
+                "position_mm = 100",
+                "position_mm = 0",
+                "6:15: position_mm = 0 mm is not above",
+            ),
+            (
+                "forward_um = 10",
+                "forward_um = 1e6",
+                "7:14: forward_um = 1000000 um is out of range",
+            ),
+            (
+                "backward_um = 8",
+                "backwards_um = 8",
+                "4:1: unknown field `backwards_um`",
+            ),
+        ] {
+            let error = ScrewMap::read("s", Axis::Z, &TEXT.replace(from, to)).unwrap_err();
+            assert!(error.to_string().starts_with(message), "{error}");
+        }
+    }
+}
