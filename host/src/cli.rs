@@ -3,6 +3,7 @@
 mod axis;
 mod look;
 mod place;
+mod plan;
 mod procedures;
 mod shared;
 
@@ -16,6 +17,7 @@ pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
+pub use self::plan::{PlanArgs, PlanFigure};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
@@ -63,6 +65,8 @@ pub enum Command {
     Identify(IdentifyArgs),
     /// Identifies a drive and offers the parameters of a loop for it: on the axis at --port, else on a simulated machine
     Autotune(AutotuneArgs),
+    /// Plans encoder, feeds and control cycle of a machine from a catalogue
+    Plan(PlanArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
     /// What works on an axis

@@ -8,6 +8,7 @@ mod choice;
 pub mod demo;
 pub mod identify;
 mod map_figures;
+pub mod plan;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;
