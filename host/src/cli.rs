@@ -4,6 +4,7 @@ mod axis;
 mod deviations;
 mod look;
 mod place;
+mod plan;
 mod procedures;
 mod shared;
 
@@ -18,6 +19,7 @@ pub use self::axis::{
 };
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
+pub use self::plan::{PlanArgs, PlanFigure};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
@@ -65,6 +67,8 @@ pub enum Command {
     Identify(IdentifyArgs),
     /// Identifies a drive and offers the parameters of a loop for it: on the axis at --port, else on a simulated machine
     Autotune(AutotuneArgs),
+    /// Plans encoder, feeds and control cycle of a machine from a catalogue
+    Plan(PlanArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
     /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it

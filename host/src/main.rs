@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
-    accuracy, autotune, axis, calibrate_encoder, demo, deviations, identify, replay, sim,
+    accuracy, autotune, axis, calibrate_encoder, demo, deviations, identify, plan, replay, sim,
     sim_encoder, tracking, tune_filter,
 };
 
@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         Some(Command::Autotune(args)) if is_on_axis => on_axis(OnAxis::Autotune(&args)),
         None => demo::run(),
         Some(Command::Sim(args)) => sim::run(&args),
+        Some(Command::Plan(args)) => plan::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),

@@ -9,6 +9,7 @@ pub mod demo;
 pub mod deviations;
 pub mod identify;
 mod map_figures;
+pub mod plan;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;

@@ -9,6 +9,8 @@ use kuva::render::render_utils::compute_tick_step;
 const LARGEST: f64 = 1e150;
 /// A range narrower than this part of its values is drawn as one value.
 const NARROWEST: f64 = 1e-9;
+/// A range of a lesser ratio is widened on a logarithmic axis.
+const LOG_NARROWEST: f64 = 2.0;
 /// Room above and below the data, as a part of its range.
 const PADDING: f64 = 0.05;
 /// An end this near to a tick, as a part of the distance between ticks, moves to it.
@@ -86,6 +88,31 @@ impl Range {
         Self {
             low: self.low - touch,
             high: self.high + touch,
+        }
+    }
+
+    /// The same of positive values with a ratio for room at both ends, for a logarithmic axis.
+    pub fn of_log(values: impl Iterator<Item = f64>) -> Self {
+        let positive = values.filter(|&value| is_drawable(value) && value > 0.0);
+        let ends = positive
+            .map(|value| (value, value))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = ends.unwrap_or((1.0, 10.0));
+        if high / low > LOG_NARROWEST {
+            return Self { low, high };
+        }
+        Self {
+            low: low / LOG_NARROWEST,
+            high: high * LOG_NARROWEST,
+        }
+    }
+
+    /// The range with its ends moved out by a share of its decades.
+    pub fn padded_log(self) -> Self {
+        let room = (self.high / self.low).powf(PADDING);
+        Self {
+            low: self.low / room,
+            high: self.high * room,
         }
     }
 
@@ -187,6 +214,16 @@ mod tests {
         assert_eq!(texts(0.0, 9e8)[1], "1e8");
         assert_eq!(texts(-9e-7, 0.0)[0], "−9e−7");
         assert_eq!(texts(1.234e9, 1.234_000_9e9)[1], "1.2340001e9");
+    }
+
+    #[test]
+    fn a_logarithmic_range_holds_what_is_positive() {
+        let range = |values: &[f64]| Range::of_log(values.iter().copied()).ends();
+        assert_eq!(range(&[-1.0, 0.0, 10.0, f64::NAN, 1e5]), (10.0, 1e5));
+        assert_eq!(range(&[7.0]), (3.5, 14.0));
+        assert_eq!(range(&[-7.0]), (1.0, 10.0));
+        let (low, high) = Range::of_log([1.0, 1e4].into_iter()).padded_log().ends();
+        assert!((0.6..0.7).contains(&low) && (1.5e4..1.6e4).contains(&high));
     }
 
     #[test]

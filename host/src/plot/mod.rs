@@ -1,4 +1,4 @@
-//! Line charts of time series, and drawings in planes, as SVG or PNG.
+//! Line charts of time series and of other curves, and drawings in planes, as SVG or PNG.
 //!
 //! A [`Figure`] is a stack of [`Panel`]s that share one time axis; a panel holds
 //! [`Series`], drawn in their order, so noise goes first and the truth last.
@@ -57,6 +57,8 @@ pub struct Figure {
     pub width: u32,
     /// Height of the whole image, pixels: [`MIN_PANEL_HEIGHT`] for each panel to [`MAX_SIDE`].
     pub height: u32,
+    /// Whether the shared axis is logarithmic: points that are not positive there are left out.
+    pub is_x_log: bool,
 }
 
 /// One chart of a figure.
@@ -72,6 +74,8 @@ pub struct Panel {
     /// Lower and upper end of the vertical axis; `None` fits the data. Curves are
     /// cut at the ends.
     pub y_limits: Option<(f64, f64)>,
+    /// Whether the vertical axis is logarithmic: points that are not positive there are left out.
+    pub is_y_log: bool,
 }
 
 impl Panel {
@@ -87,7 +91,15 @@ impl Panel {
             y_label: y_label.into(),
             series,
             y_limits: None,
+            is_y_log: false,
         }
+    }
+
+    /// The same panel with a logarithmic vertical axis.
+    #[must_use]
+    pub const fn with_log_y(mut self) -> Self {
+        self.is_y_log = true;
+        self
     }
 
     /// The same panel with a fixed vertical axis.
@@ -108,7 +120,15 @@ impl Figure {
             panels,
             width: DEFAULT_WIDTH,
             height: DEFAULT_PANEL_HEIGHT.saturating_mul(count),
+            is_x_log: false,
         }
+    }
+
+    /// The same figure with a logarithmic shared axis.
+    #[must_use]
+    pub const fn with_log_x(mut self) -> Self {
+        self.is_x_log = true;
+        self
     }
 
     /// Writes the figure in the format of the extension, `.svg` or `.png` in any case.
@@ -161,7 +181,10 @@ impl Figure {
         }
         for panel in &self.panels {
             if let Some((low, high)) = panel.y_limits
-                && !(axis::is_drawable(low) && axis::is_drawable(high) && low < high)
+                && !(axis::is_drawable(low)
+                    && axis::is_drawable(high)
+                    && low < high
+                    && !(panel.is_y_log && low <= 0.0))
             {
                 return Err(PlotError::Limits {
                     panel: panel.y_label.clone(),

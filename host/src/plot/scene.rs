@@ -1,5 +1,7 @@
 //! The layout: margins common to all panels, then panel by panel.
 
+use std::borrow::Cow;
+
 use kuva::render::axis::{add_axes_and_grid, add_labels_and_title};
 use kuva::render::layout::{AxisLabelOverlap, ComputedLayout, Layout};
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -7,6 +9,7 @@ use kuva::render::theme::Theme;
 
 use super::axis::{Range, is_drawable};
 use super::draw::{self, Frame, Target};
+use super::series::Series;
 use super::text::{self, LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
 use super::{Figure, Panel, PlotError, legend};
 
@@ -67,12 +70,15 @@ impl Plan {
         let bottom = TICK_BAND + if x_label.is_some() { LABEL_BAND } else { 0.0 };
         let count = figure.panels.len() as f64;
         let series = || figure.panels.iter().flat_map(|panel| &panel.series);
-        let x_range = Range::of(
-            series()
-                .flat_map(|series| &series.points)
-                .filter(|point| is_drawable(point.1))
-                .map(|point| point.0),
-        );
+        let drawn = series()
+            .flat_map(|series| &series.points)
+            .filter(|point| is_drawable(point.1))
+            .map(|point| point.0);
+        let x_range = if figure.is_x_log {
+            Range::of_log(drawn)
+        } else {
+            Range::of(drawn)
+        };
         let right = legend::margin(series(), width);
         let x_step = x_range.tick_step(width - right - TYPICAL_LEFT, X_TICK_SPACING);
         let room = height - top - bottom - PANEL_GAP * (count - 1.0);
@@ -84,7 +90,11 @@ impl Plan {
             right: right.round() + 0.5,
             top: top + 0.5,
             panel_height: (room / count).floor(),
-            x_range: x_range.reaching_ticks(x_step).with_end_ticks(x_step),
+            x_range: if figure.is_x_log {
+                x_range
+            } else {
+                x_range.reaching_ticks(x_step).with_end_ticks(x_step)
+            },
             x_step,
             x_label,
         };
@@ -111,10 +121,6 @@ impl Plan {
             .with_x_axis_max(self.x_range.high)
             .with_y_axis_min(y_range.low)
             .with_y_axis_max(y_range.high)
-            .with_x_tick_step(self.x_step)
-            .with_y_tick_step(y_step)
-            .with_x_tick_format(self.x_range.tick_format(self.x_step))
-            .with_y_tick_format(y_range.tick_format(y_step))
             .with_x_label_overlap(AxisLabelOverlap::Thin)
             .with_label_size(LABEL_SIZE)
             .with_tick_size(TICK_SIZE)
@@ -123,6 +129,21 @@ impl Plan {
             .with_grid_line_width(1.0)
             .with_theme(theme())
             .with_box_axes();
+        // kuva puts the ticks of a logarithmic axis itself.
+        layout = if figure.is_x_log {
+            layout.with_log_x()
+        } else {
+            layout
+                .with_x_tick_step(self.x_step)
+                .with_x_tick_format(self.x_range.tick_format(self.x_step))
+        };
+        layout = if panel.is_y_log {
+            layout.with_log_y()
+        } else {
+            layout
+                .with_y_tick_step(y_step)
+                .with_y_tick_format(y_range.tick_format(y_step))
+        };
         layout.suppress_x_ticks = !last;
         match &self.x_label {
             Some(label) if last => layout.with_x_label(text::literal(label)),
@@ -134,14 +155,41 @@ impl Plan {
 /// Ends and distance between ticks of a panel's vertical axis, `length` pixels long.
 fn y_axis(panel: &Panel, length: f64) -> (Range, f64) {
     let step_of = |range: Range| range.tick_step(length, Y_TICK_SPACING);
+    if panel.is_y_log {
+        let range = match panel.y_limits {
+            Some((low, high)) => Range { low, high },
+            None => Range::of_log(drawn_heights(panel)).padded_log(),
+        };
+        return (range, 1.0);
+    }
     if let Some((low, high)) = panel.y_limits {
         let range = Range { low, high };
         return (range.with_end_ticks(step_of(range)), step_of(range));
     }
-    let points = panel.series.iter().flat_map(|series| &series.points);
-    let drawn = points.filter(|point| is_drawable(point.0));
-    let range = Range::of(drawn.map(|point| point.1)).padded();
+    let range = Range::of(drawn_heights(panel)).padded();
     (range, step_of(range))
+}
+
+fn drawn_heights(panel: &Panel) -> impl Iterator<Item = f64> {
+    let points = panel.series.iter().flat_map(|series| &series.points);
+    points
+        .filter(|point| is_drawable(point.0))
+        .map(|point| point.1)
+}
+
+/// A series with a gap where a logarithmic axis has no place for it.
+fn positive(series: &Series, is_x_log: bool, is_y_log: bool) -> Cow<'_, Series> {
+    let has_place = |&(x, y): &(f64, f64)| (!is_x_log || x > 0.0) && (!is_y_log || y > 0.0);
+    if series.points.iter().all(has_place) {
+        return Cow::Borrowed(series);
+    }
+    let mut placed = series.clone();
+    for point in &mut placed.points {
+        if !has_place(point) {
+            point.1 = f64::NAN;
+        }
+    }
+    Cow::Owned(placed)
 }
 
 pub(super) fn theme() -> Theme {
@@ -192,7 +240,8 @@ fn panel(scene: &mut Scene, target: Target, figure: &Figure, plan: &Plan, index:
     });
     let series = &figure.panels[index].series;
     for one in series {
-        draw::series(scene, target, &frame, one);
+        let one = positive(one, figure.is_x_log, figure.panels[index].is_y_log);
+        draw::series(scene, target, &frame, &one);
     }
     let corner = (frame.right, frame.top);
     legend::draw(scene, target, series, corner, frame.bottom, plan.right);

@@ -13,6 +13,7 @@ mod identify;
 mod machine_files;
 mod outputs;
 mod pictures;
+mod plan;
 mod replay;
 mod replay_estimator;
 mod replay_faults;

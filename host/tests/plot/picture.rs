@@ -1,6 +1,6 @@
 //! What the reader sees.
 
-use leadscrew_host::plot::{Colour, Figure, Series};
+use leadscrew_host::plot::{Colour, Figure, PlotError, Series};
 
 use crate::examples::{motion, one_line, one_panel, sampled};
 use crate::reading::{Picture, Text, elements, number, texts};
@@ -253,4 +253,30 @@ fn noise_keeps_its_envelope_in_the_picture() {
     // Padding of 5 % above and below leaves 91 % of the frame.
     let tall = rows.last().unwrap() - rows.first().unwrap();
     assert!(tall > 230, "spikes {tall} pixels tall");
+}
+
+#[test]
+fn decades_of_logarithmic_axes_are_as_wide_as_each_other() {
+    let points = (0..=40).map(|at| 10_f64.powf(f64::from(at) / 10.0));
+    let mut points: Vec<_> = points.map(|x| (x, x * x)).collect();
+    points.push((0.0, -1.0));
+    let mut figure = one_line(points).with_log_x();
+    figure.panels[0].is_y_log = true;
+    assert_ticks_are_legible(&figure);
+    let labels = texts(&figure.to_svg().unwrap());
+    let place = |content: &str| {
+        let label = labels
+            .iter()
+            .find(|text| text.content == content && text.middle);
+        label.expect(content).x
+    };
+    let first = place("10") - place("1");
+    assert!((place("1000") - place("100") - first).abs() < 1e-6);
+    assert_eq!(Picture::of(&figure).width, 1200);
+    // Nothing that has a place.
+    let mut empty = one_line(vec![(-1.0, 1.0)]).with_log_x();
+    empty.panels[0] = empty.panels[0].clone().with_log_y();
+    assert!(empty.to_svg().is_ok());
+    empty.panels[0].y_limits = Some((0.0, 1.0));
+    assert!(matches!(empty.to_svg(), Err(PlotError::Limits { .. })));
 }

@@ -95,6 +95,38 @@ impl MachineAxis {
     }
 }
 
+impl Machine {
+    /// The same machine with another encoder on every axis that has a travel for one, and on every spindle.
+    ///
+    /// # Errors
+    /// A message: lines that it does not come with, none chosen where there are several, or no place for it.
+    pub fn with_encoder(&self, encoder: &Encoder, lines: Option<f64>) -> Result<Self, String> {
+        let mut machine = self.clone();
+        for axis in &mut machine.axes {
+            let Some(fitted) = &mut axis.encoder else {
+                let name = &axis.name;
+                return Err(format!(
+                    "of axis {name} only the resolution is known: give it encoder and travel_mm in a catalogue"
+                ));
+            };
+            *fitted = FittedEncoder::new(encoder, lines, fitted.travel_mm)?;
+            let counts_per_mm = fitted.counts_per_mm().map_err(|error| error.to_string())?;
+            let limits = &axis.kinematics;
+            axis.kinematics = Kinematics::new(
+                limits.max_feed_mm_per_min(),
+                limits.max_acceleration_m_s2(),
+                limits.max_jerk_m_s3(),
+                counts_per_mm,
+            )
+            .map_err(|error| error.to_string())?;
+        }
+        for spindle in &mut machine.spindles {
+            spindle.encoder = FittedEncoder::new(encoder, lines, 0.0)?;
+        }
+        Ok(machine)
+    }
+}
+
 impl Catalogue {
     /// The built-in one.
     ///

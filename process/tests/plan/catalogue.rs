@@ -59,6 +59,33 @@ fn users_add_theirs_and_may_have_encoders_that_are_there() {
 }
 
 #[test]
+fn another_encoder_may_be_tried() {
+    let catalogue = Catalogue::built_in().unwrap();
+    let lathe = catalogue.machine("16K20F3").unwrap();
+    let finer = lathe
+        .with_encoder(catalogue.encoder("A110-F").unwrap(), Some(180_000.0))
+        .unwrap();
+    let plan = Question::default().machine(&finer).unwrap();
+    let z = &plan.axes[0];
+    // 2.25 MHz of 125 kHz: P1's finding, a finer encoder cannot give the resolution that acceleration needs.
+    assert!((z.encoder.line_hz - 2.25e6).abs() < 1e-3 && !z.encoder.is_within);
+    assert!((z.encoder.largest_lines.unwrap() - 10_000.0).abs() < 1e-9);
+    assert!(
+        lathe
+            .with_encoder(catalogue.encoder("A110-F").unwrap(), None)
+            .is_err()
+    );
+    let mill = catalogue.machine("FP7M").unwrap();
+    let message = mill
+        .with_encoder(catalogue.encoder("BE178").unwrap(), None)
+        .unwrap_err();
+    assert!(
+        message.starts_with("of axis all only the resolution is known"),
+        "{message}"
+    );
+}
+
+#[test]
 fn an_encoder_past_its_highest_speed_is_told() {
     let mut catalogue = Catalogue::built_in().unwrap();
     let fast = OWN

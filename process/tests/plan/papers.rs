@@ -17,7 +17,7 @@ fn p1_velocities_and_accelerations() {
     }
     assert_near(scale.acceleration_from_overload(2.0).unwrap(), 19.6, 0.05);
     let fast = AxisScale::new(1000.0, 2500.0).unwrap();
-    assert_near(fast.acceleration_from_overload(2.0).unwrap(), 3.14, 0.005);
+    assert_near(fast.acceleration_from_overload(2.0).unwrap(), 3.1392, 1e-9);
     assert_near(scale.overload_from_acceleration(2.1), 0.214, 0.0005);
     assert_near(scale.overload_from_acceleration(0.9), 0.092, 0.0005);
 }
