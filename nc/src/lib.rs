@@ -6,8 +6,9 @@
 pub mod block;
 pub mod checks;
 pub mod coordinates;
-pub mod path;
 pub mod dialect;
 pub mod machine_state;
+pub mod path;
+pub mod setup;
 pub mod source;
 pub mod terms;
