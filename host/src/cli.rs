@@ -1,6 +1,7 @@
 //! The command line.
 
 mod axis;
+mod deviations;
 mod look;
 mod place;
 mod procedures;
@@ -15,6 +16,7 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
@@ -65,6 +67,8 @@ pub enum Command {
     Autotune(AutotuneArgs),
     /// Moves simulated axes and measures how well they follow, beside LinuxCNC's pid: the tables of tracking
     Tracking(TrackingArgs),
+    /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it
+    Deviations(DeviationsArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

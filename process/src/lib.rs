@@ -5,4 +5,5 @@
 #![forbid(unsafe_code)]
 
 pub mod deviations;
+pub mod metrology;
 pub mod plan;

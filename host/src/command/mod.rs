@@ -6,6 +6,7 @@ pub mod axis;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;
+pub mod deviations;
 pub mod identify;
 mod map_figures;
 pub mod replay;

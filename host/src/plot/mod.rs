@@ -1,4 +1,4 @@
-//! Line charts of time series, as SVG or PNG.
+//! Line charts of time series, and drawings in planes, as SVG or PNG.
 //!
 //! A [`Figure`] is a stack of [`Panel`]s that share one time axis; a panel holds
 //! [`Series`], drawn in their order, so noise goes first and the truth last.
@@ -15,6 +15,7 @@ mod decimate;
 mod draw;
 mod error;
 mod legend;
+mod plane;
 mod raster;
 mod scene;
 mod series;
@@ -28,6 +29,7 @@ use kuva::backend::svg::SvgBackend;
 
 pub use decimate::decimate;
 pub use error::PlotError;
+pub use plane::{Plane, PlaneFigure};
 pub use series::{Colour, Series, Stroke};
 
 use crate::whole_file;
@@ -118,16 +120,7 @@ impl Figure {
     /// Another extension, a figure that cannot be laid out (see [`PlotError`]), or
     /// the file system refusing.
     pub fn save(&self, path: &Path) -> Result<(), PlotError> {
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let bytes = match extension.map(str::to_ascii_lowercase).as_deref() {
-            Some("svg") => self.to_svg()?.into_bytes(),
-            Some("png") => self.to_png()?,
-            _ => return Err(PlotError::Extension { path: path.into() }),
-        };
-        whole_file::write(path, |file| file.write_all(&bytes)).map_err(|cause| PlotError::Write {
-            path: path.into(),
-            cause,
-        })
+        save_as(path, || self.to_svg(), || self.to_png())
     }
 
     /// The figure as an SVG document.
@@ -179,4 +172,22 @@ impl Figure {
         }
         Ok(())
     }
+}
+
+/// Writes a figure in the format of the extension.
+fn save_as(
+    path: &Path,
+    to_svg: impl FnOnce() -> Result<String, PlotError>,
+    to_png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
+) -> Result<(), PlotError> {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let bytes = match extension.map(str::to_ascii_lowercase).as_deref() {
+        Some("svg") => to_svg()?.into_bytes(),
+        Some("png") => to_png()?,
+        _ => return Err(PlotError::Extension { path: path.into() }),
+    };
+    whole_file::write(path, |file| file.write_all(&bytes)).map_err(|cause| PlotError::Write {
+        path: path.into(),
+        cause,
+    })
 }

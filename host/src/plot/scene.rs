@@ -11,7 +11,7 @@ use super::text::{self, LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
 use super::{Figure, Panel, PlotError, legend};
 
 /// Fonts of the SVG: the one kuva measures by first, then others of its width.
-const FONTS: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
+pub(super) const FONTS: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
 /// Space above the first panel, with a title and without, pixels.
 const TITLE_BAND: f64 = 44.0;
 const TOP_EDGE: f64 = 16.0;
@@ -144,7 +144,7 @@ fn y_axis(panel: &Panel, length: f64) -> (Range, f64) {
     (range, step_of(range))
 }
 
-fn theme() -> Theme {
+pub(super) fn theme() -> Theme {
     Theme {
         axis_color: "#444444".into(),
         tick_color: "#444444".into(),

@@ -7,6 +7,7 @@ mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
 mod demo;
+mod deviations;
 mod help;
 mod identify;
 mod machine_files;

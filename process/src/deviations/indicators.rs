@@ -59,6 +59,15 @@ pub struct Measured {
     pub sigma: Option<Vec<f64>>,
 }
 
+impl Measured {
+    /// True where more indicators than unknowns check each other.
+    #[must_use]
+    pub fn is_checked(&self) -> bool {
+        let readings = self.residuals_mm.first().map_or(0, Vec::len);
+        readings > self.components.len()
+    }
+}
+
 impl Readings {
     /// The setting vectors that fit best, least squares at each coordinate.
     ///

@@ -158,7 +158,7 @@ impl Machine {
                     at.with(one.axis, place)
                 });
                 let found = self.correction(&at).map_err(|error| error.to_string())?;
-                Ok(found.k)
+                Ok(found.k.iter().map(|(axis, k)| (axis, rounded(k))).collect())
             },
         )
         .map(|grid| {
@@ -201,6 +201,11 @@ impl Machine {
         }
         Ok(largest)
     }
+}
+
+/// To 0.01 nm: what lies below is rounding of the sums.
+fn rounded(value: f64) -> f64 {
+    (value * 1e8).round() / 1e8 + 0.0
 }
 
 /// The place of a node, the last axis running fastest.

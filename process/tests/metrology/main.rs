@@ -1,0 +1,9 @@
+//! Metrology of parts against the papers' formulas, exact geometry and noise.
+
+mod hand;
+mod noise;
+mod oracle;
+mod papers;
+mod refusals;
+mod rigid;
+mod support;
