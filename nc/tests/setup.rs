@@ -33,7 +33,7 @@ coefficient = [
 
 [[terms.screw]]
 axis = "X"
-file = "screw-x.toml"
+file = "screw-x.csv"
 
 [[terms.grid]]
 file = "volume.toml"
@@ -57,8 +57,7 @@ a_mm = 0.05
 gamma_rad = 0.001
 "#;
 
-const SCREW: &str = "[[screw]]\nposition_mm = -10\nforward_um = 0\nbackward_um = 6\n\
-                     [[screw]]\nposition_mm = 400\nforward_um = 20.5\nbackward_um = 26.5\n";
+const SCREW: &str = "position_mm,forward_um,backward_um\n-10,0,6\n400,20.5,26.5\n";
 
 const VOLUME: &str = "name = \"volume\"\n\
                       over = [{ axis = \"Z\", places_mm = [0, 400] }]\n\
@@ -66,7 +65,7 @@ const VOLUME: &str = "name = \"volume\"\n\
 
 fn files(name: &str) -> Result<String, String> {
     match name {
-        "screw-x.toml" => Ok(SCREW.to_owned()),
+        "screw-x.csv" => Ok(SCREW.to_owned()),
         "volume.toml" => Ok(VOLUME.to_owned()),
         "bad.toml" => Ok(VOLUME.replace("[0, 400]", "[400, 0]")),
         _ => Err(format!("{name}: cannot be read")),
@@ -212,16 +211,16 @@ fn what_is_wrong_is_told_with_line_and_column() {
             "32:8: bad.toml:2:9: the places of Z must rise",
         ),
         (
-            "screw-x.toml",
+            "screw-x.csv",
             "volume.toml",
-            "29:8: volume.toml:3:1: unknown field `correct`",
+            "29:8: volume.toml:1:1: 1 values, expected are position_mm",
         ),
         (
             "axis = \"X\"\nfile",
             "axis = \"A\"\nfile",
             "28:8: axis = \"A\": a screw map is of a linear axis",
         ),
-        ("file = \"screw-x.toml\"", "", "needs either file"),
+        ("file = \"screw-x.csv\"", "", "needs either file"),
         (
             "temperature_c = 26.0",
             "temperature_c = 260",

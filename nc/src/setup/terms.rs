@@ -161,14 +161,14 @@ fn screw(text: &str, entry: &Spanned<ScrewEntry>, files: ReadFile<'_>) -> Result
     }
     let named = file.name.clone().unwrap_or_else(|| format!("screw {axis}"));
     let map = match (&file.file, &file.points) {
-        (Some(name), None) => ScrewMap::read(&named, axis, &content(text, name, files)?)
+        (Some(name), None) => ScrewMap::read_csv(&named, axis, &content(text, name, files)?)
             .map_err(|complaint| inside(text, name, &complaint))?,
         (None, Some(points)) => ScrewMap::from_points(&named, axis, text, points)?,
         _ => {
             return Err(Complaint::at(
                 text,
                 &entry.span(),
-                "a screw map needs either file = \"NAME.toml\" or points = [ … ]",
+                "a screw map needs either file = \"NAME.csv\" or points = [ … ]",
             ));
         }
     };
