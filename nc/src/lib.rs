@@ -9,5 +9,6 @@ pub mod coordinates;
 pub mod dialect;
 pub mod machine_state;
 pub mod path;
+pub mod setup;
 pub mod source;
 pub mod terms;

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Circumstances, Region, Shape, Steepness, Term, TermError, Trouble};
 use crate::coordinates::{Axis, AxisSet, Coordinates};
+use crate::source::Complaint;
 use file::GridFile;
 
 /// One coordinate of a grid.
@@ -85,6 +86,14 @@ impl Grid {
             ));
         }
         Ok(grid)
+    }
+
+    /// From a text in TOML; what is wrong has its place, also where it is the numbers.
+    ///
+    /// # Errors
+    /// What is wrong in the text, and where.
+    pub fn read(text: &str) -> Result<Self, Complaint> {
+        file::read(text)
     }
 
     /// A grid filled by asking for K at each node; coordinates not in `over` are 0 in the place asked for.
@@ -268,14 +277,7 @@ fn check_axes(over: &[GridAxis], corrects: &[Axis]) -> Result<(), String> {
         if over[..i].iter().any(|other| other.axis == axis) {
             return Err(format!("{axis} is twice a coordinate of the grid"));
         }
-        if one.places.len() < 2 || !one.places.iter().all(|place| place.is_finite()) {
-            return Err(format!("{axis} needs two places or more, all finite"));
-        }
-        if one.places.windows(2).any(|pair| pair[0] >= pair[1]) {
-            return Err(format!(
-                "the places of {axis} must rise from one to the next"
-            ));
-        }
+        check_places(one)?;
     }
     if corrects.is_empty() {
         return Err("a grid corrects one axis or more".to_owned());
@@ -284,6 +286,18 @@ fn check_axes(over: &[GridAxis], corrects: &[Axis]) -> Result<(), String> {
         if corrects[..i].contains(axis) {
             return Err(format!("{axis} is corrected twice by the grid"));
         }
+    }
+    Ok(())
+}
+
+fn check_places(GridAxis { axis, places }: &GridAxis) -> Result<(), String> {
+    if places.len() < 2 || !places.iter().all(|place| place.is_finite()) {
+        return Err(format!("{axis} needs two places or more, all finite"));
+    }
+    if places.windows(2).any(|pair| pair[0] >= pair[1]) {
+        return Err(format!(
+            "the places of {axis} must rise from one to the next"
+        ));
     }
     Ok(())
 }
@@ -363,7 +377,8 @@ correct = [{ axis = "Z", values_mm = [0.0, 0.01, 0.02, 0.10, 0.11, 0.13] }]
             ("\"B\"", "\"X\"", "X needs places_mm"),
             ("0.13", "inf", "must be a finite number"),
         ] {
-            let error = read_toml::<Grid>(&TOML.replace(from, to)).unwrap_err();
+            let error = Grid::read(&TOML.replace(from, to)).unwrap_err();
+            assert!(error.place.line >= 4, "{error}");
             assert!(error.message.contains(message), "{error}");
         }
     }

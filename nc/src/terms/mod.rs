@@ -9,6 +9,7 @@ pub mod grid;
 pub mod screw;
 mod table;
 pub mod thermal;
+pub mod watch;
 pub mod wear;
 pub mod workpiece;
 

@@ -1,8 +1,10 @@
 //! The screw map: what a drive's own positioning is off at places of its travel, having come from below and from above.
 //!
-//! In TOML, a point a table, as the on-board screw table and the scenarios of `leadscrew sim` have it:
-//! `[[screw]]` with `position_mm`, `forward_um` (carriage less place, reached towards larger coordinates) and `backward_um`
-//! (towards smaller; left out: the same). K = −error.
+//! A file of them is the CSV of the on-board screw table, `position_mm,forward_um,backward_um`: carriage less place, reached
+//! towards larger and towards smaller coordinates. In TOML a point has the same keys; `backward_um` left out is the same as
+//! `forward_um`. K = −error.
+
+mod csv_form;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -23,13 +25,6 @@ pub struct PointFile {
     position_mm: Spanned<f64>,
     forward_um: Spanned<f64>,
     backward_um: Option<Spanned<f64>>,
-}
-
-/// A file of nothing but points.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScrewFile {
-    screw: Vec<PointFile>,
 }
 
 /// The screw map of one axis.
@@ -67,13 +62,12 @@ impl ScrewMap {
         })
     }
 
-    /// A map from a file of points.
+    /// A map from the CSV of the on-board screw table.
     ///
     /// # Errors
     /// What is wrong in the text, and where.
-    pub fn read(name: &str, axis: Axis, text: &str) -> Result<Self, Complaint> {
-        let file: ScrewFile = crate::source::read_toml(text)?;
-        Self::from_points(name, axis, text, &file.screw)
+    pub fn read_csv(name: &str, axis: Axis, text: &str) -> Result<Self, Complaint> {
+        Self::from_points(name, axis, text, &csv_form::points(text)?)
     }
 
     /// A map from the points of a text.
@@ -115,10 +109,7 @@ impl ScrewMap {
             checked.push((at, forward, backward));
         }
         Self::new(name, axis, &checked).map_err(|message| {
-            let span = points
-                .first()
-                .map_or(0..0, |point| point.position_mm.span());
-            Complaint::at(text, &span, format!("the screw map of {axis}: {message}"))
+            Complaint::at(text, &(0..0), format!("the screw map of {axis}: {message}"))
         })
     }
 
@@ -198,8 +189,7 @@ mod tests {
     use super::super::Approach;
     use super::*;
 
-    const TEXT: &str = "[[screw]]\nposition_mm = 0\nforward_um = 0\nbackward_um = 8\n\
-                        [[screw]]\nposition_mm = 100\nforward_um = 10\nbackward_um = 20\n";
+    const TEXT: &str = "# measured cold\nposition_mm,forward_um,backward_um\n0,0,8\n100, 10,20\n";
 
     fn coming(direction: Direction) -> Circumstances {
         Circumstances {
@@ -210,7 +200,7 @@ mod tests {
 
     #[test]
     fn it_undoes_the_error_of_the_direction_it_came_from() {
-        let map = ScrewMap::read("screw Z", Axis::Z, TEXT).unwrap();
+        let map = ScrewMap::read_csv("screw Z", Axis::Z, TEXT).unwrap();
         let at = Coordinates::xyz(0.0, 0.0, 25.0);
         let k = |with| map.correction(&at, &with).map(|k| k[Axis::Z]);
         assert!((k(coming(Direction::Up)).unwrap() + 0.0025).abs() < 1e-15);
@@ -222,10 +212,8 @@ mod tests {
 
     #[test]
     fn one_error_for_both_directions_needs_no_direction() {
-        let text = TEXT
-            .replace("backward_um = 8\n", "")
-            .replace("backward_um = 20\n", "");
-        let map = ScrewMap::read("screw Z", Axis::Z, &text).unwrap();
+        let text = TEXT.replace("0,0,8", "0,0,0").replace("10,20", "10,10");
+        let map = ScrewMap::read_csv("screw Z", Axis::Z, &text).unwrap();
         let at = Coordinates::xyz(0.0, 0.0, 25.0);
         let k = map.correction(&at, &Circumstances::default()).unwrap();
         assert!((k[Axis::Z] + 0.0025).abs() < 1e-15);
@@ -235,23 +223,30 @@ mod tests {
     #[test]
     fn bad_points_are_refused_at_their_place() {
         for (from, to, message) in [
+            ("100,", "0,", "4:1: position_mm = 0 mm is not above"),
             (
-                "position_mm = 100",
-                "position_mm = 0",
-                "6:15: position_mm = 0 mm is not above",
+                " 10,",
+                " 1e6,",
+                "4:6: forward_um = 1000000 um is out of range",
             ),
             (
-                "forward_um = 10",
-                "forward_um = 1e6",
-                "7:14: forward_um = 1000000 um is out of range",
+                "0,0,8",
+                "0,0,",
+                "3:5: backward_um = \"\": a number is expected",
             ),
             (
-                "backward_um = 8",
-                "backwards_um = 8",
-                "4:1: unknown field `backwards_um`",
+                "0,0,8",
+                "0,0",
+                "3:1: 2 values, expected are position_mm, forward_um, backward_um",
             ),
+            (
+                "forward_um,",
+                "forwards,",
+                "2:13: \"forwards\": expected is forward_um",
+            ),
+            ("\n100, 10,20", "", "1:1: the screw map of Z: two places"),
         ] {
-            let error = ScrewMap::read("s", Axis::Z, &TEXT.replace(from, to)).unwrap_err();
+            let error = ScrewMap::read_csv("s", Axis::Z, &TEXT.replace(from, to)).unwrap_err();
             assert!(error.to_string().starts_with(message), "{error}");
         }
     }

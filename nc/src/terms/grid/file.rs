@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
+use toml::Spanned;
 
-use super::{Grid, GridAxis, ToolOffsetRange, nodes};
+use super::{Grid, GridAxis, ToolOffsetRange, check_places, nodes};
 use crate::coordinates::{Axis, Coordinates};
+use crate::source::{Complaint, read_toml};
 
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -76,16 +79,57 @@ fn by_unit(axis: Axis, list: Vec<f64>) -> (Option<Vec<f64>>, Option<Vec<f64>>) {
     }
 }
 
+/// Where the parts of a grid are in a text.
+#[derive(Deserialize)]
+struct Spans {
+    over: Vec<Spanned<IgnoredAny>>,
+    correct: Vec<Spanned<IgnoredAny>>,
+}
+
+/// A grid from a text, what is wrong with its numbers at the part that has them.
+pub(super) fn read(text: &str) -> Result<Grid, Complaint> {
+    let file: GridFile = read_toml(text)?;
+    let spans: Spans = read_toml(text)?;
+    let nodes = file.over.iter().fold(1_usize, |product, one| {
+        let places = one.places_mm.as_ref().or(one.places_deg.as_ref());
+        product.saturating_mul(places.map_or(1, Vec::len))
+    });
+    for (one, span) in file.over.iter().zip(&spans.over) {
+        one.clone()
+            .checked()
+            .and_then(|axis| check_places(&axis))
+            .map_err(|message| Complaint::at(text, &span.span(), message))?;
+    }
+    for (one, span) in file.correct.iter().zip(&spans.correct) {
+        let values = in_unit(
+            one.axis,
+            "values",
+            one.values_mm.clone(),
+            one.values_deg.clone(),
+        );
+        values
+            .and_then(|column| check_column(one.axis, &column, nodes))
+            .map_err(|message| Complaint::at(text, &span.span(), message))?;
+    }
+    Grid::try_from(file).map_err(|message| Complaint::at(text, &(0..0), message))
+}
+
+impl OverFile {
+    fn checked(self) -> Result<GridAxis, String> {
+        Ok(GridAxis {
+            axis: self.axis,
+            places: in_unit(self.axis, "places", self.places_mm, self.places_deg)?,
+        })
+    }
+}
+
 impl TryFrom<GridFile> for Grid {
     type Error = String;
 
     fn try_from(file: GridFile) -> Result<Self, String> {
         let mut over = Vec::new();
         for one in file.over {
-            over.push(GridAxis {
-                axis: one.axis,
-                places: in_unit(one.axis, "places", one.places_mm, one.places_deg)?,
-            });
+            over.push(one.checked()?);
         }
         let mut corrects = Vec::new();
         let mut columns = Vec::new();
@@ -101,14 +145,24 @@ impl TryFrom<GridFile> for Grid {
     }
 }
 
+fn check_column(axis: Axis, column: &[f64], nodes: usize) -> Result<(), String> {
+    if column.len() != nodes {
+        return Err(format!(
+            "{} values correct {axis}, and the grid has {nodes} nodes: one value for each is needed",
+            column.len()
+        ));
+    }
+    match column.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(format!(
+            "a value of {axis} is {value}: it must be a finite number"
+        )),
+        None => Ok(()),
+    }
+}
+
 fn interleaved(axes: &[Axis], columns: &[Vec<f64>], nodes: usize) -> Result<Vec<f64>, String> {
     for (axis, column) in axes.iter().zip(columns) {
-        if column.len() != nodes {
-            return Err(format!(
-                "{} values correct {axis}, and the grid has {nodes} nodes: one value for each is needed",
-                column.len()
-            ));
-        }
+        check_column(*axis, column, nodes)?;
     }
     Ok((0..nodes)
         .flat_map(|node| columns.iter().map(move |column| column[node]))
