@@ -4,6 +4,7 @@
 //! its axis, and an angle a right-handed rotation.
 #![forbid(unsafe_code)]
 
+pub mod csv_table;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;

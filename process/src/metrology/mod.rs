@@ -7,7 +7,7 @@
 //! Features are fitted by least squares, weighted where a 1σ is stated, to all their touches. Without redundancy that gives P4's
 //! formulas, which the tests hold against it.
 //!
-//! Reading order: [`touch`], [`fitted`], then a file a feature.
+//! Reading order: [`touch`], [`fitted`], then a file a feature; [`part`] is what a user's files say, measured.
 
 mod adjustment;
 pub mod bore;
@@ -17,6 +17,7 @@ pub mod fitted;
 mod flat;
 mod nominal;
 mod outliers;
+pub mod part;
 pub mod passes;
 pub mod plane;
 pub mod relations;

@@ -4,6 +4,8 @@ mod hand;
 mod noise;
 mod oracle;
 mod papers;
+mod part;
 mod refusals;
 mod rigid;
+mod rs274;
 mod support;
