@@ -4,6 +4,8 @@
 //! its axis, and an angle a right-handed rotation.
 #![forbid(unsafe_code)]
 
+pub mod axis_calibration;
+mod csv_text;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;
