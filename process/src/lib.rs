@@ -4,7 +4,9 @@
 //! its axis, and an angle a right-handed rotation.
 #![forbid(unsafe_code)]
 
+pub mod axis_calibration;
 pub mod csv_table;
+mod csv_text;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;
