@@ -1,6 +1,7 @@
 //! The command line.
 
 mod axis;
+mod calibration;
 mod deviations;
 mod look;
 mod place;
@@ -17,6 +18,7 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::calibration::{CalibrateAxisArgs, ScrewTableCommand, UncertaintyArgs};
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
@@ -56,6 +58,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Learns where the edges of an encoder really lie: from captures of steady feeds, or with --port on the axis itself
     CalibrateEncoder(CalibrateEncoderArgs),
+    /// Accuracy and repeatability of an axis after ISO 230-2 from what a laser reads, and the table that undoes its errors
+    CalibrateAxis(CalibrateAxisArgs),
     /// Writes a capture of the simulated encoder on steady feeds, to try the others on
     SimEncoder(SimEncoderArgs),
     /// Tries every estimator with many parameters and finds the best trade of lag for noise

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
-    accuracy, autotune, axis, calibrate_encoder, demo, deviations, identify, plan, replay, sim,
-    sim_encoder, tracking, tune_filter,
+    accuracy, autotune, axis, calibrate_axis, calibrate_encoder, demo, deviations, identify, plan,
+    replay, sim, sim_encoder, tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -25,6 +25,7 @@ fn main() -> ExitCode {
         Some(Command::Plan(args)) => plan::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
+        Some(Command::CalibrateAxis(args)) => calibrate_axis::run(&args),
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Tracking(args)) => tracking::run(&args),

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, SetupArgs};
+use super::{
+    BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, ScrewTableCommand, SetupArgs,
+};
 
 /// What works on an axis.
 #[derive(Debug, Subcommand)]
@@ -42,6 +44,9 @@ pub enum AxisCommand {
     /// Shows, sets, saves and restores what is set on the axis
     #[command(subcommand)]
     Params(ParamsCommand),
+    /// Writes, reads and erases the screw error table that the axis keeps
+    #[command(subcommand)]
+    ScrewTable(ScrewTableCommand),
     /// Runs a script of moves and checks, for acceptance
     Run(RunArgs),
     /// Keeps the axis of --port qemu or sim running, for other commands to reach it by --port tcp:…

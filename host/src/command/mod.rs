@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod autotune;
 pub mod axis;
+pub mod calibrate_axis;
 pub mod calibrate_encoder;
 mod choice;
 pub mod demo;

@@ -3,6 +3,7 @@
 mod accuracy;
 mod autotune;
 mod axis;
+mod calibrate_axis;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;

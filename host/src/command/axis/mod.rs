@@ -19,6 +19,7 @@ pub mod record;
 pub mod recording;
 pub mod run;
 pub mod scope;
+pub mod screw_table;
 pub mod serve;
 mod setup;
 pub mod status;
@@ -44,6 +45,7 @@ pub fn run(port: &PortArgs, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Override(args) => motion::percent(args).map(|_| None)?,
         AxisCommand::Jog(args) => motion::time(args).map(|_| None)?,
         AxisCommand::Params(command) => params::check(command).map(|()| None)?,
+        AxisCommand::ScrewTable(command) => screw_table::check(command).map(|_| None)?,
         _ => None,
     };
     let mut axis = open(port, &interrupted)?;
@@ -72,6 +74,7 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Counters(args) => counters::run(axis, args),
         AxisCommand::Restart(args) => motion::restart(axis, args),
         AxisCommand::Params(command) => params::run(axis, command),
+        AxisCommand::ScrewTable(command) => screw_table::run(axis, command),
         AxisCommand::Setup(args) => setup::run(axis, args),
         AxisCommand::NullOffset(args) => null_offset::run(axis, args),
         AxisCommand::Scope(args) => scope::run(axis, args),
