@@ -1,6 +1,7 @@
 //! The command line.
 
 mod axis;
+mod correct;
 mod deviations;
 mod look;
 mod place;
@@ -17,6 +18,7 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::correct::CorrectArgs;
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
@@ -73,6 +75,8 @@ pub enum Command {
     Tracking(TrackingArgs),
     /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it
     Deviations(DeviationsArgs),
+    /// Corrects an NC program by named terms: tables of deviations, screw maps, growth, wear, how the workpiece lies
+    Correct(CorrectArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

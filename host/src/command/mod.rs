@@ -5,6 +5,7 @@ pub mod autotune;
 pub mod axis;
 pub mod calibrate_encoder;
 mod choice;
+pub mod correct;
 pub mod demo;
 pub mod deviations;
 pub mod identify;
