@@ -2,6 +2,7 @@
 
 mod axis;
 mod calibration;
+mod correct;
 mod deviations;
 mod look;
 mod place;
@@ -19,6 +20,7 @@ pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
 pub use self::calibration::{CalibrateAxisArgs, ScrewTableCommand, UncertaintyArgs};
+pub use self::correct::CorrectArgs;
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
@@ -77,6 +79,8 @@ pub enum Command {
     Tracking(TrackingArgs),
     /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it
     Deviations(DeviationsArgs),
+    /// Corrects an NC program by named terms: tables of deviations, screw maps, growth, wear, how the workpiece lies
+    Correct(CorrectArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

@@ -6,6 +6,7 @@ pub mod axis;
 pub mod calibrate_axis;
 pub mod calibrate_encoder;
 mod choice;
+pub mod correct;
 pub mod demo;
 pub mod deviations;
 pub mod identify;
