@@ -6,6 +6,7 @@ mod look;
 mod place;
 mod plan;
 mod procedures;
+mod prove_out;
 mod shared;
 
 use std::path::PathBuf;
@@ -21,6 +22,7 @@ pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
+pub use self::prove_out::ProveOutArgs;
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
 use crate::axis::PortArgs;
@@ -73,6 +75,8 @@ pub enum Command {
     Tracking(TrackingArgs),
     /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it
     Deviations(DeviationsArgs),
+    /// Proves a program out on a simulated machine: machines a part, probes it, corrects the program, machines again
+    ProveOut(ProveOutArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),
