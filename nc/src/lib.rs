@@ -6,6 +6,7 @@
 pub mod block;
 pub mod checks;
 pub mod coordinates;
+pub mod corrector;
 pub mod dialect;
 pub mod machine_state;
 pub mod path;

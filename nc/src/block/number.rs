@@ -22,6 +22,8 @@ pub struct Number {
     integer_digits: u8,
     decimals: u8,
     point: bool,
+    /// It has zeros before its first digit.
+    padded: bool,
 }
 
 /// Why some text is no number.
@@ -67,6 +69,7 @@ impl Number {
             integer_digits: 0,
             decimals: 0,
             point: false,
+            padded: false,
         };
         let mut end = 0;
         let mut at = 0;
@@ -99,18 +102,6 @@ impl Number {
         Ok((number, end))
     }
 
-    /// A plain number without sign or point.
-    #[must_use]
-    pub const fn integer(mantissa: i64) -> Self {
-        Self {
-            mantissa,
-            sign: Sign::None,
-            integer_digits: 1,
-            decimals: 0,
-            point: false,
-        }
-    }
-
     /// A style to write numbers in that were not there.
     #[must_use]
     pub const fn style(sign: Sign, integer_digits: u8, decimals: u8, point: bool) -> Self {
@@ -120,10 +111,22 @@ impl Number {
             integer_digits,
             decimals,
             point,
+            padded: integer_digits > 1,
+        }
+    }
+
+    /// The same style with so many digits before the point, zeros in front.
+    #[must_use]
+    pub const fn with_width(self, integer_digits: u8) -> Self {
+        Self {
+            integer_digits,
+            padded: true,
+            ..self
         }
     }
 
     fn push(&mut self, digit: u8) -> Result<(), NumberError> {
+        self.padded |= !self.point && self.integer_digits == 1 && self.mantissa == 0;
         let digits = if self.point {
             &mut self.decimals
         } else {
@@ -166,6 +169,15 @@ impl Number {
         self.sign
     }
 
+    /// [`Sign::Plus`] where it shows its plus.
+    #[must_use]
+    pub const fn sign_shown(&self) -> Sign {
+        match self.sign {
+            Sign::Plus => Sign::Plus,
+            Sign::None | Sign::Minus => Sign::None,
+        }
+    }
+
     /// Digits before the point.
     #[must_use]
     pub const fn integer_digits(&self) -> u8 {
@@ -187,7 +199,9 @@ impl Number {
     /// Writes itself as it was read, blanks apart.
     pub fn write(&self, out: &mut Vec<u8>) {
         let magnitude = self.mantissa.unsigned_abs();
-        self.write_digits(self.mantissa < 0, false, magnitude, self.decimals, out);
+        // "-0.000" comes back as it was.
+        let minus = self.sign == Sign::Minus;
+        self.write_digits(minus, false, magnitude, self.decimals, out);
     }
 
     /// Writes another number in its style: `steps` of 10^−`decimals` each. Sign shown, leading zeros and width stay; it has
@@ -214,15 +228,18 @@ impl Number {
         decimals: u8,
         out: &mut Vec<u8>,
     ) {
-        // "-0.000" stays what it was.
-        if negative || (magnitude == 0 && self.sign == Sign::Minus) {
+        if negative {
             out.push(b'-');
         } else if signed || self.sign == Sign::Plus {
             out.push(b'+');
         }
         let power = 10_u64.pow(u32::from(decimals));
         let (whole, part) = (magnitude / power, magnitude % power);
-        let integer_digits = usize::from(self.integer_digits);
+        // Leading zeros stay; without them a shorter number is a shorter word.
+        let integer_digits = match self.integer_digits {
+            digits if self.padded => usize::from(digits),
+            digits => usize::from(digits.min(1)),
+        };
         if whole > 0 || integer_digits > 0 {
             let _ = write!(out, "{whole:0integer_digits$}");
         }

@@ -39,6 +39,8 @@ impl<'a> Builder<'a> {
             diameter: None,
             diameter_at_start: file.axes.diameter_at_start,
             start: Vec::new(),
+            set_data: file.set_data.clone(),
+            work_offsets: Vec::new(),
             local_is_shift: file.axes.local_is_shift,
             tools: file.tools.selection,
             offsets_stand_still: file.tools.offsets_stand_still,
@@ -204,6 +206,7 @@ impl<'a> Builder<'a> {
         }
         for name in std::mem::take(&mut self.file.work_offsets) {
             let tenths = self.name(&name)?.tenths as u16;
+            self.dialect.work_offsets.push(tenths);
             self.assign(&[name], Code::WorkOffset(tenths))?;
         }
         for cycle in std::mem::take(&mut self.file.cycle) {

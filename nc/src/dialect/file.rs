@@ -21,6 +21,9 @@ pub(super) struct File {
     pub tools: Tools,
     /// Codes in force at the start.
     pub start: Vec<Spanned<String>>,
+    /// L of G10 that are known.
+    #[serde(default)]
+    pub set_data: Vec<u32>,
     pub codes: BTreeMap<Meaning, Vec<Spanned<String>>>,
     #[serde(default)]
     pub work_offsets: Vec<Spanned<String>>,

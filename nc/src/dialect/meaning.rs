@@ -96,6 +96,8 @@ pub enum Meaning {
     SetTool,
     /// The profile of a roughing or finishing cycle: blocks P to Q; U, W and the rest are no places.
     Profile,
+    /// Runs such a profile again to finish it.
+    FinishProfile,
 }
 
 /// Where a cycle leaves the axes.

@@ -67,6 +67,8 @@ pub struct Dialect {
     diameter: Option<Axis>,
     diameter_at_start: bool,
     start: Vec<Code>,
+    set_data: Vec<u32>,
+    work_offsets: Vec<u16>,
     local_is_shift: bool,
     tools: ToolSelection,
     offsets_stand_still: bool,
@@ -193,6 +195,28 @@ impl Dialect {
     #[must_use]
     pub fn why_refused(&self, number: u8) -> &str {
         &self.refused[usize::from(number)]
+    }
+
+    /// True where G10 of this L is known.
+    #[must_use]
+    pub fn sets_data(&self, l: u32) -> bool {
+        self.set_data.contains(&l)
+    }
+
+    /// Codes of the work offsets, in tenths, in the order that G10 counts them in.
+    #[must_use]
+    pub fn work_offsets(&self) -> &[u16] {
+        &self.work_offsets
+    }
+
+    /// The number of a code that does something, in tenths, the lowest of several.
+    #[must_use]
+    pub fn code_of(&self, meaning: Meaning) -> Option<u16> {
+        let tenths = self
+            .g
+            .iter()
+            .position(|code| *code == Some(Code::Of(meaning)))?;
+        u16::try_from(tenths).ok()
     }
 
     /// Codes in force at the start.
