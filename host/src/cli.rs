@@ -8,6 +8,7 @@ mod look;
 mod place;
 mod plan;
 mod procedures;
+mod prove_out;
 mod shared;
 
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
+pub use self::prove_out::ProveOutArgs;
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
 use crate::axis::PortArgs;
@@ -81,6 +83,8 @@ pub enum Command {
     Deviations(DeviationsArgs),
     /// Corrects an NC program by named terms: tables of deviations, screw maps, growth, wear, how the workpiece lies
     Correct(CorrectArgs),
+    /// Proves a program out on a simulated machine: machines a part, probes it, corrects the program, machines again
+    ProveOut(ProveOutArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

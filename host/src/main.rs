@@ -7,7 +7,7 @@ use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
     accuracy, autotune, axis, calibrate_axis, calibrate_encoder, correct, demo, deviations,
-    identify, plan, replay, sim, sim_encoder, tracking, tune_filter,
+    identify, plan, prove_out, replay, sim, sim_encoder, tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
         Some(Command::Correct(args)) => correct::run(&args),
         Some(Command::Deviations(args)) => deviations::run(&args),
+        Some(Command::ProveOut(args)) => prove_out::run(&args),
         Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {

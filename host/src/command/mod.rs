@@ -12,6 +12,7 @@ pub mod deviations;
 pub mod identify;
 mod map_figures;
 pub mod plan;
+pub mod prove_out;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;

@@ -15,6 +15,7 @@ mod machine_files;
 mod outputs;
 mod pictures;
 mod plan;
+mod prove_out;
 mod replay;
 mod replay_estimator;
 mod replay_faults;
