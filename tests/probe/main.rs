@@ -1,0 +1,3 @@
+//! Probing: on the simulated machine and on captures made up.
+
+mod figures;
