@@ -16,6 +16,10 @@ use crate::scenario::Plant;
 const MOST_TICKS: u32 = 2_000_000;
 /// Ticks from enable to an axis that is ready.
 const READY_TICKS: u32 = 300;
+/// Where a surface is out of the way, mm.
+const AWAY_MM: f64 = 9e4;
+/// Ticks in which a probe that was touching is seen to be free.
+const RELEASE_TICKS: u32 = 20;
 /// Ticks ahead that a move is planned.
 const LEAD: u32 = 50;
 
@@ -134,13 +138,16 @@ impl<'m> TouchBench<'m> {
         }
     }
 
-    /// Moves to `position_mm`, raw from where the encoder counts, and lets the loop settle.
+    /// Takes the surface away, moves to `position_mm`, raw from where the encoder counts, and lets the loop settle.
     ///
     /// # Errors
     /// A feed that the axis has not, or an axis that does not come to rest.
     pub fn go_to(&mut self, position_mm: f64, feed_mm_per_min: f64) -> Result<(), TouchingError> {
         let target = Position::saturating_from_num(self.scale.counts_from_mm(position_mm));
         let feed = self.feed(feed_mm_per_min)?;
+        if let Some(probe) = &mut self.board.probe {
+            probe.set_surface(AWAY_MM, true);
+        }
         let tick = self.outputs.tick;
         self.planner.begin(self.axis.commanded().position, tick);
         let planned = self.planner.move_to(target, feed, tick.wrapping_add(LEAD));
@@ -171,6 +178,7 @@ impl<'m> TouchBench<'m> {
         let probe = self.board.probe.as_mut().ok_or(TouchingError::NoProbe)?;
         probe.set_surface(surface_mm, towards_mm > from_mm);
         let trigger_d = probe.trigger_d();
+        self.run(RELEASE_TICKS);
         let up = if towards_mm > from_mm { 1.0 } else { -1.0 };
         let place = |mm| Position::saturating_from_num(self.scale.counts_from_mm(mm));
         let order = ProbeOrder {

@@ -22,8 +22,8 @@ parameter_table! {
         following_allowance_mm: 0.02, "mm", 0.0..=10.0;
         /// Feed of the way back, at most the axis's largest
         retract_feed_mm_per_min: 500.0, "mm/min", 0.001..=1e6;
-        /// A touch while something else moves the axis: 1 stops it, 0 only notes it
-        stop_on_touch: 1.0, "0 or 1", 0.0..=1.0;
+        /// A touch while something else moves the axis: 1 stops it, 0 only notes it; an input that nobody wired may not stop it
+        stop_on_touch: 0.0, "0 or 1", 0.0..=1.0;
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::params::AxisParams;
-use leadscrew::probe::ProbeEnd;
+use leadscrew::probe::{ProbeEnd, ProbeParams};
 use leadscrew_hal_mock::board::TouchProbeParams;
 use leadscrew_hal_mock::encoder::EncoderModel;
 use leadscrew_hal_mock::machine::MachineParams;
@@ -20,6 +20,8 @@ const SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 const TOUCHES: usize = 30;
 const TICK_HZ: f64 = 1000.0;
 const FEED_MM_PER_MIN: f64 = 100.0;
+/// Trigger delay of the simulated probe, as calibrated.
+const DELAY_S: f64 = 5e-4;
 
 /// Learned maps of the seeds.
 static MAPS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
@@ -53,11 +55,17 @@ const BASE: Row = Row {
     both_ways: false,
 };
 
-fn params(machine: &MachineParams) -> AxisParams {
+fn params(machine: &MachineParams, row: &Row) -> AxisParams {
     let estimator = EstimatorConfig::by_name("exponential").unwrap().unwrap();
-    MoveAndBack::standard(TICK_HZ)
-        .axis_params(machine, estimator)
-        .unwrap()
+    let scenario = MoveAndBack::standard(TICK_HZ);
+    AxisParams {
+        probe: ProbeParams {
+            trigger_delay_s: DELAY_S,
+            trigger_jitter_s: row.jitter_s,
+            ..ProbeParams::default()
+        },
+        ..scenario.axis_params(machine, estimator).unwrap()
+    }
 }
 
 /// What one seed gives.
@@ -73,6 +81,7 @@ fn touches(row: &Row, at: usize) -> Found {
     let probe = TouchProbeParams {
         surface_mm: 50.0,
         at_shaft: 1.0,
+        delay_s: DELAY_S,
         jitter_s: row.jitter_s,
         repeatability_2s_mm: row.repeatability_2s_mm,
         ..TouchProbeParams::default()
@@ -80,8 +89,11 @@ fn touches(row: &Row, at: usize) -> Found {
     let map = row
         .mapped
         .then(|| EncoderMap::from_bytes(&MAPS[at]).unwrap());
+    if let Some(m) = &map {
+        eprintln!("{:?}", m.residual());
+    }
     let plant = plant_with_probe(machine, probe);
-    let mut bench = TouchBench::new(&plant, &params(&machine), map, SEEDS[at]).unwrap();
+    let mut bench = TouchBench::new(&plant, &params(&machine, row), map, SEEDS[at]).unwrap();
     // Over the index, for the map.
     bench.go_to(12.0, 2000.0).unwrap();
     let mut found = Found {
@@ -111,6 +123,13 @@ fn touches(row: &Row, at: usize) -> Found {
         let raw: f64 = measured.raw.to_num();
         found.errors.push(raw - truth);
         found.counted.push((raw.floor() + 0.5) - truth);
+        eprintln!(
+            "{} {at} {touch} up {up} err {:.4} sd {:.4} v {:.3}",
+            row.name,
+            raw - truth,
+            measured.variance.to_num::<f64>().sqrt(),
+            measured.velocity
+        );
         found.touches.push(touched);
     }
     found
