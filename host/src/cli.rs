@@ -5,6 +5,7 @@ mod deviations;
 mod look;
 mod place;
 mod plan;
+mod probe;
 mod procedures;
 mod shared;
 
@@ -20,6 +21,7 @@ pub use self::axis::{
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
+pub use self::probe::{CalibrateProbeCommand, FitArgs, ProbeArgs};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
@@ -73,6 +75,9 @@ pub enum Command {
     Tracking(TrackingArgs),
     /// Tells what the deviations of a machine's units do to the place of the tool, and the corrections against it
     Deviations(DeviationsArgs),
+    /// Calibrates a touch probe from tables of touches: trigger delay, stylus, run-out
+    #[command(subcommand)]
+    CalibrateProbe(CalibrateProbeCommand),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
-    accuracy, autotune, axis, calibrate_encoder, demo, deviations, identify, plan, replay, sim,
-    sim_encoder, tracking, tune_filter,
+    accuracy, autotune, axis, calibrate_encoder, calibrate_probe, demo, deviations, identify, plan,
+    replay, sim, sim_encoder, tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -32,6 +32,7 @@ fn main() -> ExitCode {
         Some(Command::Autotune(args)) => autotune::run(&args),
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
         Some(Command::Deviations(args)) => deviations::run(&args),
+        Some(Command::CalibrateProbe(command)) => calibrate_probe::run(&command),
         Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {

@@ -10,3 +10,4 @@ mod csv_text;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;
+pub mod probing;

@@ -64,7 +64,7 @@ proptest! {
     #[test]
     fn a_touch_is_where_its_first_edge_was_at_any_feed_and_debounce(
         debounce_s in 0.0..0.02,
-        after in 30_usize..400,
+        after in 80_usize..400,
         bounce in prop::collection::vec(any::<bool>(), 0..12),
         up in any::<bool>(),
     ) {

@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod autotune;
 pub mod axis;
 pub mod calibrate_encoder;
+pub mod calibrate_probe;
 mod choice;
 pub mod demo;
 pub mod deviations;
