@@ -53,7 +53,7 @@ fn tables_are_read_and_complained_about() {
     );
     assert!((touches[0].angle - PI).abs() < 1e-12);
     let error = TurnedTouch::read("along,angle_deg,position_mm\nz,0,1\n").unwrap_err();
-    assert_eq!(error.to_string(), "2:1: `z`: expected x or y");
+    assert_eq!(error.to_string(), "2:1: along = \"z\": expected x or y");
 }
 
 proptest! {
@@ -62,9 +62,9 @@ proptest! {
     #[test]
     fn a_random_run_out_is_recovered_within_its_sigma(
         seed in any::<u64>(),
-        x_mm in -0.1..0.1,
-        y_mm in -0.1..0.1,
-        phase in 0.0..6.28,
+        x_mm in -0.1..0.1_f64,
+        y_mm in -0.1..0.1_f64,
+        phase in 0.0..6.28_f64,
         noise_mm in 1e-5..2e-3,
     ) {
         let mut noise = Noise::new(seed);

@@ -151,7 +151,10 @@ fn tables_are_read_and_complained_about() {
     let triggers = read("x_mm,y_mm\n1,2\n", Artefact::Ring).unwrap();
     assert_eq!(triggers, [[1.0, 2.0, 0.0]]);
     let error = read("x_mm,y_mm\n1,2\n", Artefact::Sphere).unwrap_err();
-    assert_eq!(error.to_string(), "1:1: column `z_mm` is missing");
+    assert!(
+        error.to_string().contains("there is no column \"z_mm\""),
+        "{error}"
+    );
 }
 
 fn probes() -> impl Strategy<Value = Probe> {
