@@ -7,6 +7,7 @@ mod deviations;
 mod look;
 mod place;
 mod plan;
+mod probe;
 mod procedures;
 mod prove_out;
 mod shared;
@@ -25,6 +26,7 @@ pub use self::correct::CorrectArgs;
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
 pub use self::plan::{PlanArgs, PlanFigure};
+pub use self::probe::{CalibrateProbeCommand, FitArgs, ProbeArgs};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
 pub use self::prove_out::ProveOutArgs;
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
@@ -85,6 +87,9 @@ pub enum Command {
     Correct(CorrectArgs),
     /// Proves a program out on a simulated machine: machines a part, probes it, corrects the program, machines again
     ProveOut(ProveOutArgs),
+    /// Calibrates a touch probe from tables of touches: trigger delay, stylus, run-out
+    #[command(subcommand)]
+    CalibrateProbe(CalibrateProbeCommand),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

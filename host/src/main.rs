@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
-    accuracy, autotune, axis, calibrate_axis, calibrate_encoder, correct, demo, deviations,
-    identify, plan, prove_out, replay, sim, sim_encoder, tracking, tune_filter,
+    accuracy, autotune, axis, calibrate_axis, calibrate_encoder, calibrate_probe, correct, demo,
+    deviations, identify, plan, prove_out, replay, sim, sim_encoder, tracking, tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -35,6 +35,7 @@ fn main() -> ExitCode {
         Some(Command::Correct(args)) => correct::run(&args),
         Some(Command::Deviations(args)) => deviations::run(&args),
         Some(Command::ProveOut(args)) => prove_out::run(&args),
+        Some(Command::CalibrateProbe(command)) => calibrate_probe::run(&command),
         Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {

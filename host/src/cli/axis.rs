@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::{BodeArgs, JsonArgs, NullOffsetArgs, ProbeArgs, RecordArgs, ScopeArgs, SetupArgs};
 use super::{
     BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, ScrewTableCommand, SetupArgs,
 };
@@ -27,6 +28,8 @@ pub enum AxisCommand {
     Home(JsonArgs),
     /// Moves the axis to a place, or by a distance, and waits until it is there
     Move(MoveArgs),
+    /// Goes towards a place until the touch probe touches, then back, once or many times
+    Probe(ProbeArgs),
     /// Moves the axis until Ctrl-C, or for a time
     Jog(JogArgs),
     /// Feed hold: stops the axis, which remembers its target

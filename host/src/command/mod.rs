@@ -5,6 +5,7 @@ pub mod autotune;
 pub mod axis;
 pub mod calibrate_axis;
 pub mod calibrate_encoder;
+pub mod calibrate_probe;
 mod choice;
 pub mod correct;
 pub mod demo;

@@ -15,6 +15,7 @@ pub mod motion;
 mod null_offset;
 pub mod params;
 mod person;
+pub mod probe;
 pub mod record;
 pub mod recording;
 pub mod run;
@@ -42,6 +43,7 @@ pub fn run(port: &PortArgs, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Run(args) => Some(crate::axis::script::Script::read(&args.script)?),
         AxisCommand::Serve(args) => return serve::run(port, args, &interrupted),
         AxisCommand::Move(args) => motion::check_move(args).map(|()| None)?,
+        AxisCommand::Probe(args) => probe::check(args).map(|()| None)?,
         AxisCommand::Override(args) => motion::percent(args).map(|_| None)?,
         AxisCommand::Jog(args) => motion::time(args).map(|_| None)?,
         AxisCommand::Params(command) => params::check(command).map(|()| None)?,
@@ -66,6 +68,7 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Disable(args) => motion::disable(axis, args),
         AxisCommand::Home(args) => motion::home(axis, args),
         AxisCommand::Move(args) => motion::go(axis, args),
+        AxisCommand::Probe(args) => probe::run(axis, args),
         AxisCommand::Jog(args) => motion::jog(axis, args),
         AxisCommand::Hold(args) => motion::hold(axis, args),
         AxisCommand::Resume(args) => motion::resume(axis, args),
