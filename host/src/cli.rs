@@ -5,6 +5,7 @@ mod calibration;
 mod correct;
 mod deviations;
 mod look;
+mod measure;
 mod place;
 mod plan;
 mod probe;
@@ -25,6 +26,7 @@ pub use self::calibration::{CalibrateAxisArgs, ScrewTableCommand, UncertaintyArg
 pub use self::correct::CorrectArgs;
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
+pub use self::measure::MeasureArgs;
 pub use self::plan::{PlanArgs, PlanFigure};
 pub use self::probe::{CalibrateProbeCommand, FitArgs, ProbeArgs};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
@@ -90,6 +92,8 @@ pub enum Command {
     /// Calibrates a touch probe from tables of touches: trigger delay, stylus, run-out
     #[command(subcommand)]
     CalibrateProbe(CalibrateProbeCommand),
+    /// Computes the features of a part from touches of a probe, or writes the program that makes these
+    Measure(MeasureArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

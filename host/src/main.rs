@@ -7,7 +7,8 @@ use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
     accuracy, autotune, axis, calibrate_axis, calibrate_encoder, calibrate_probe, correct, demo,
-    deviations, identify, plan, prove_out, replay, sim, sim_encoder, tracking, tune_filter,
+    deviations, identify, measure, plan, prove_out, replay, sim, sim_encoder, tracking,
+    tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Some(Command::Deviations(args)) => deviations::run(&args),
         Some(Command::ProveOut(args)) => prove_out::run(&args),
         Some(Command::CalibrateProbe(command)) => calibrate_probe::run(&command),
+        Some(Command::Measure(args)) => measure::run(&args),
         Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {

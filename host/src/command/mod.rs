@@ -12,6 +12,7 @@ pub mod demo;
 pub mod deviations;
 pub mod identify;
 mod map_figures;
+pub mod measure;
 pub mod plan;
 pub mod prove_out;
 pub mod replay;

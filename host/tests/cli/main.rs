@@ -12,6 +12,7 @@ mod deviations;
 mod help;
 mod identify;
 mod machine_files;
+mod measure;
 mod outputs;
 mod pictures;
 mod plan;
