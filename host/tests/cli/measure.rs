@@ -74,7 +74,7 @@ fn the_json_has_values_and_touches() {
     assert_eq!(report["schema"], "leadscrew/measure/1");
     assert_eq!(
         keys(&report),
-        ["schema", "without_outliers", "level", "features"]
+        ["features", "level", "schema", "without_outliers"]
     );
     assert_eq!(report["features"].as_array().unwrap().len(), 12);
     let top = &report["features"][0];
@@ -83,7 +83,7 @@ fn the_json_has_values_and_touches() {
     assert_eq!(top["touches"].as_array().unwrap().len(), 5);
     assert_eq!(
         keys(&top["values"][0]),
-        ["quantity", "unit", "value", "sigma"]
+        ["quantity", "sigma", "unit", "value"]
     );
 }
 
