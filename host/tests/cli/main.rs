@@ -6,6 +6,7 @@ mod axis;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
+mod correct;
 mod demo;
 mod deviations;
 mod help;
