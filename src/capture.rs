@@ -106,6 +106,20 @@ impl<'a> Observation<'a> {
         self.capture.index.map(|latch| self.unwrap_latch(latch))
     }
 
+    /// True if the probe triggered in this tick.
+    #[inline]
+    #[must_use]
+    pub const fn has_probe(&self) -> bool {
+        self.capture.probe.is_some()
+    }
+
+    /// True if the probe is deflected at the sampling instant.
+    #[inline]
+    #[must_use]
+    pub const fn is_touching(&self) -> bool {
+        self.capture.touching
+    }
+
     /// The probe, if it triggered in this tick.
     #[must_use]
     pub fn probe(&self) -> Option<UnwrappedLatch> {

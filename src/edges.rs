@@ -275,6 +275,14 @@ impl<'m> EdgeReader<'m> {
         self.config.scale.span(observation.elapsed)
     }
 
+    /// Ticks with `frac` fractional bits, 28 at most, in so many clocks; none from [`MAX_SPAN_TICKS`] on.
+    #[must_use]
+    pub fn ticks_of(&self, clocks: u32, frac: u32) -> Option<u32> {
+        let span = self.config.scale.span(clocks);
+        let shift = Span::FRAC_NBITS.saturating_sub(frac);
+        (span < LONGEST).then(|| span.to_bits().wrapping_shr(shift))
+    }
+
     /// True if that time is a tick to 2⁻²⁴ of it. False says nothing: where a tick is not a
     /// whole number of clocks, it is for [`Self::elapsed`] to tell.
     #[inline]

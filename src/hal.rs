@@ -32,6 +32,9 @@ pub struct Capture<'a> {
     pub illegal: u16,
     /// Edge times were lost since the previous capture; the count is still good.
     pub overrun: bool,
+    /// The probe is deflected at the sampling instant, whatever the polarity of its wire.
+    // In what the alignment leaves unused beside the two before.
+    pub touching: bool,
     /// The index pulse, if it came since the previous capture.
     pub index: Option<Latch>,
     /// The probe input, if it triggered since the previous capture.

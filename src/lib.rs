@@ -60,6 +60,7 @@ mod narrowing;
 pub mod output;
 pub mod parameter_table;
 pub mod params;
+pub mod probe;
 pub mod protocol;
 pub mod quadrature;
 pub mod scope;

@@ -15,13 +15,14 @@ use crate::estimator::paths::{Config as EstimatorsConfig, Paths};
 use crate::homing::HomingParams;
 use crate::parameter_table;
 use crate::parameter_table::ParameterTable;
+use crate::probe::ProbeParams;
 use crate::setpoint::profile::Limits;
 use crate::setpoint::sources::{self, SourceParams};
 use crate::setpoint::travel::TravelLimits;
 use crate::supervisor::{self, SupervisorParams};
 use crate::uncertainty::EdgeErrors;
 use crate::units::{AxisScale, Position, RangeError};
-use crate::{compensation, controller, homing, output};
+use crate::{compensation, controller, homing, output, probe};
 
 /// Largest share of the full-command speed that a maximum feed may use; the rest is for control.
 pub const MAX_FEED_SHARE: f64 = 0.95;
@@ -59,6 +60,8 @@ pub struct AxisParams {
     pub supervisor: SupervisorParams,
     /// Homing.
     pub homing: HomingParams,
+    /// Probing.
+    pub probe: ProbeParams,
     /// Sources of setpoints other than planned moves.
     pub sources: SourceParams,
 }
@@ -173,6 +176,8 @@ pub struct AxisConfig {
     pub supervisor: supervisor::Config,
     /// Homing.
     pub homing: homing::Config,
+    /// Probing.
+    pub probe: probe::Config,
     /// Soft limits of travel, from the origin of homing.
     pub travel: Option<TravelLimits>,
     /// Sources of setpoints other than planned moves.
@@ -199,6 +204,7 @@ impl AxisParams {
             compensation: CompensationParams::default(),
             supervisor: SupervisorParams::default(),
             homing: HomingParams::default(),
+            probe: ProbeParams::default(),
             sources: SourceParams::default(),
         }
     }
@@ -225,6 +231,9 @@ impl AxisParams {
             compensation,
             homing: self
                 .homing
+                .quantise(scale, &limits, self.motion.counts_per_revolution)?,
+            probe: self
+                .probe
                 .quantise(scale, &limits, self.motion.counts_per_revolution)?,
             travel: self.motion.travel(scale)?,
             controller: LawParams {

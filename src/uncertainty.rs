@@ -112,6 +112,21 @@ impl EdgeNoise {
         Variance::from_bits(error.wrapping_mul(error))
     }
 
+    /// Variance of a place that the slow error brings, 2⁻⁴⁸ d²: what an error of this slope amounts to whose wave
+    /// is `reach` d over a radian. The longest wave on a revolution counts for all.
+    #[must_use]
+    pub const fn of_place(&self, reach: u32) -> u64 {
+        let error = (self.slope as u64)
+            .wrapping_mul(reach as u64)
+            .wrapping_shr(SLOPE_FRAC - 24);
+        let error = if error > u32::MAX as u64 {
+            u32::MAX as u64
+        } else {
+            error
+        };
+        error.wrapping_mul(error)
+    }
+
     /// Variance of an acceleration at `velocity` (Q12.20 d/tick) that the slow error brings.
     #[inline]
     #[must_use]

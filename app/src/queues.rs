@@ -6,6 +6,7 @@ use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 use leadscrew::estimator::observer::Gains;
 use leadscrew::params::AxisConfig;
+use leadscrew::probe;
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::service::Ticket;
 use leadscrew::scope::{Sample, Scope};
@@ -71,6 +72,7 @@ pub struct Queues<const CAPTURED: usize = WORDS, const LOOKED_AT: usize = EDGES>
     configs_back: Queue<ConfigPlace, 2>,
     outcomes: Queue<Outcome, OUTCOMES>,
     faults: Queue<FirstFault, 4>,
+    touches: Queue<probe::Report, 4>,
     scopes: Queue<Scope<'static>, 2>,
     scopes_back: Queue<Scope<'static>, 2>,
     samples: Queue<Sample, SAMPLES>,
@@ -92,6 +94,7 @@ pub struct TickEnds {
     pub(crate) configs_back: Producer<'static, ConfigPlace>,
     pub(crate) outcomes: Producer<'static, Outcome>,
     pub(crate) faults: Producer<'static, FirstFault>,
+    pub(crate) touches: Producer<'static, probe::Report>,
     pub(crate) scopes: Consumer<'static, Scope<'static>>,
     pub(crate) scopes_back: Producer<'static, Scope<'static>>,
     pub(crate) samples: Producer<'static, Sample>,
@@ -111,6 +114,8 @@ pub struct LinkEnds {
     pub outcomes: Consumer<'static, Outcome>,
     /// The first fault, told again when others follow it.
     pub faults: Consumer<'static, FirstFault>,
+    /// What the probe came to, told anew with each touch and each end.
+    pub touches: Consumer<'static, probe::Report>,
     /// Scopes for the tick.
     pub scopes: Producer<'static, Scope<'static>>,
     /// Scopes that are over.
@@ -139,6 +144,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
             configs_back: Queue::new(),
             outcomes: Queue::new(),
             faults: Queue::new(),
+            touches: Queue::new(),
             scopes: Queue::new(),
             scopes_back: Queue::new(),
             samples: Queue::new(),
@@ -156,6 +162,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
         let (configured, configs_back) = self.configs_back.split();
         let (answer, outcomes) = self.outcomes.split();
         let (tell, faults) = self.faults.split();
+        let (touch, touches) = self.touches.split();
         let (lend, scopes) = self.scopes.split();
         let (give_back, scopes_back) = self.scopes_back.split();
         let (sample, samples) = self.samples.split();
@@ -166,6 +173,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
             configs_back: configured,
             outcomes: answer,
             faults: tell,
+            touches: touch,
             scopes,
             scopes_back: give_back,
             samples: sample,
@@ -179,6 +187,7 @@ impl<const CAPTURED: usize, const LOOKED_AT: usize> Queues<CAPTURED, LOOKED_AT> 
             config_place: Some(&mut self.prepared),
             outcomes,
             faults,
+            touches,
             scopes: lend,
             scopes_back,
             samples,

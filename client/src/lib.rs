@@ -29,8 +29,8 @@ mod status;
 
 pub use axis::{
     Axis, ExperimentPhase, ExperimentStatus, FaultPage, Kind, LastReset, Learned, LearningPhase,
-    LearningStatus, Live, Parameter, Records, Samples, ScopePhase, ScopeStatus, Stored,
-    TickCounters, Value,
+    LearningStatus, Live, Parameter, ProbeStatus, Records, Samples, ScopePhase, ScopeStatus,
+    Stored, TickCounters, Touch, Value,
 };
 pub use connection::{Connection, Sample};
 pub use error::{Error, Refused};

@@ -12,6 +12,7 @@ mod brake;
 mod converter;
 mod drive_lines;
 mod switches;
+mod touch_probe;
 
 use core::ops::Range;
 
@@ -23,6 +24,7 @@ pub use self::brake::BrakeParams;
 pub use self::converter::Converter;
 pub use self::drive_lines::{DriveHealth, DriveLineParams};
 pub use self::switches::SwitchParams;
+pub use self::touch_probe::{TouchProbe, TouchProbeParams};
 
 use self::brake::Brake;
 use self::drive_lines::DriveLines;
@@ -39,6 +41,8 @@ pub struct BoardParams {
     pub switches: SwitchParams,
     /// The brake and what it holds.
     pub brake: BrakeParams,
+    /// The touch probe and what it touches.
+    pub probe: TouchProbeParams,
 }
 
 /// What is wrong around the axis; set between two ticks. The default is nothing.
@@ -68,6 +72,8 @@ pub struct Board {
     pub machine: Machine,
     /// What is wrong, to be changed between two ticks.
     pub trouble: Trouble,
+    /// The touch probe, where there is one.
+    pub probe: Option<TouchProbe>,
     drive_lines: DriveLines,
     switches: Switches,
     brake: Brake,
@@ -98,6 +104,13 @@ impl Board {
         let capture = machine.capture();
         Ok(Self {
             sampled: (capture.count, capture.sampled_at),
+            probe: TouchProbe::new(
+                &params.probe,
+                &machine,
+                scale.counts_per_mm(),
+                tick_hz,
+                seed,
+            )?,
             machine,
             trouble: Trouble::default(),
             drive_lines: DriveLines::new(&params.drive_lines, tick_hz)?,
@@ -146,14 +159,22 @@ impl Board {
             let carriage = self.machine.truth().carriage.position;
             let share = self.switches.step(carriage);
             home = home.or(share.map(|share| f64::from(tick) + share));
+            if let Some(probe) = &mut self.probe {
+                probe.step(&self.machine);
+            }
         }
         if let Some(faulty) = &mut self.faulty {
             faulty.apply(&self.machine.capture());
         }
+        let mut probe = self.probe.take();
         let capture = self.source();
+        if let Some(probe) = &mut probe {
+            probe.sample(before, &capture);
+        }
         let ticks = f64::from(self.missed_ticks) + 1.0;
         let home = home.map(|share| switches::latch(before, &capture, share / ticks));
         let sampled = (capture.count, capture.sampled_at);
+        self.probe = probe;
         self.home = home;
         self.sampled = sampled;
     }
@@ -178,6 +199,9 @@ impl Board {
     pub fn inputs<'a>(&'a self, enable: bool, reference: Reference<'a>) -> Inputs<'a> {
         let mut capture = self.source();
         capture.home = self.home;
+        if let Some(probe) = &self.probe {
+            (capture.touching, capture.probe) = probe.input();
+        }
         if self.trouble.encoder_reversed {
             capture = reversed(capture);
         }

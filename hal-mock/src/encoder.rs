@@ -87,6 +87,12 @@ impl Encoder {
         self.sampling_advance
     }
 
+    /// The timer when a share of the tick just past was over, without noise; shares above 1 lie in ticks to come.
+    #[must_use]
+    pub fn time_at(&self, share: f64) -> u32 {
+        self.timer.time_at(share)
+    }
+
     /// Edges a revolution.
     #[must_use]
     pub const fn edges(&self) -> usize {
@@ -134,6 +140,7 @@ impl Encoder {
             edges,
             illegal: 0,
             overrun: self.ring.overrun(),
+            touching: false,
             index: self.index,
             probe: None,
             home: None,

@@ -294,6 +294,7 @@ impl hal::Encoder for FaultyEncoder {
             edges,
             illegal: self.seen.illegal,
             overrun: self.seen.overrun || self.ring.overrun(),
+            touching: false,
             index: self.seen.index,
             probe: self.seen.probe,
             home: self.seen.home,

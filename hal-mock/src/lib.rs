@@ -31,6 +31,7 @@ pub mod scene;
 mod slip;
 pub mod spindle;
 pub mod tachogenerator;
+pub mod touching;
 pub mod trace;
 mod track;
 mod wave;

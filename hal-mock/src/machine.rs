@@ -162,6 +162,12 @@ impl Machine {
         &self.encoder
     }
 
+    /// Motion of the encoder's shaft in the last tick.
+    #[must_use]
+    pub const fn seen(&self) -> &Arc {
+        &self.seen
+    }
+
     /// What really happened.
     #[must_use]
     pub fn truth(&self) -> Truth {

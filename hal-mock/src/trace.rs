@@ -85,7 +85,8 @@ impl TraceDigest {
         for part in capture.edges {
             part.iter().for_each(|&time| self.word(time));
         }
-        self.word(u32::from(capture.illegal) | u32::from(capture.overrun) << 16);
+        let flags = u32::from(capture.overrun) | u32::from(capture.touching) << 1;
+        self.word(u32::from(capture.illegal) | flags << 16);
         for latch in [capture.index, capture.probe, capture.home] {
             self.option(latch.map(|Latch { count, .. }| count));
             self.option(latch.map(|Latch { time, .. }| time));
@@ -172,6 +173,10 @@ mod tests {
             },
             Capture {
                 overrun: true,
+                ..none
+            },
+            Capture {
+                touching: true,
                 ..none
             },
             Capture { illegal: 1, ..none },

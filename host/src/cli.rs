@@ -1,12 +1,16 @@
 //! The command line.
 
 mod axis;
+mod calibration;
 mod correct;
 mod deviations;
 mod look;
+mod measure;
 mod place;
 mod plan;
+mod probe;
 mod procedures;
+mod prove_out;
 mod shared;
 
 use std::path::PathBuf;
@@ -18,11 +22,15 @@ use leadscrew::estimator::EstimatorConfig;
 pub use self::axis::{
     AxisCommand, JogArgs, MoveArgs, OverrideArgs, ParamsCommand, RunArgs, ServeArgs,
 };
+pub use self::calibration::{CalibrateAxisArgs, ScrewTableCommand, UncertaintyArgs};
 pub use self::correct::CorrectArgs;
 pub use self::deviations::DeviationsArgs;
 pub use self::look::{BodeArgs, RecordArgs, RecordingArgs, ScopeArgs, SignalList};
+pub use self::measure::MeasureArgs;
 pub use self::plan::{PlanArgs, PlanFigure};
+pub use self::probe::{CalibrateProbeCommand, FitArgs, ProbeArgs};
 pub use self::procedures::{NullOffsetArgs, RoomArgs, SetupArgs, YesArgs};
+pub use self::prove_out::ProveOutArgs;
 pub use self::shared::{BenchArgs, ChannelArgs, JsonArgs, OutputArgs, SimulatedArgs};
 
 use crate::axis::PortArgs;
@@ -58,6 +66,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Learns where the edges of an encoder really lie: from captures of steady feeds, or with --port on the axis itself
     CalibrateEncoder(CalibrateEncoderArgs),
+    /// Accuracy and repeatability of an axis after ISO 230-2 from what a laser reads, and the table that undoes its errors
+    CalibrateAxis(CalibrateAxisArgs),
     /// Writes a capture of the simulated encoder on steady feeds, to try the others on
     SimEncoder(SimEncoderArgs),
     /// Tries every estimator with many parameters and finds the best trade of lag for noise
@@ -77,6 +87,13 @@ pub enum Command {
     Deviations(DeviationsArgs),
     /// Corrects an NC program by named terms: tables of deviations, screw maps, growth, wear, how the workpiece lies
     Correct(CorrectArgs),
+    /// Proves a program out on a simulated machine: machines a part, probes it, corrects the program, machines again
+    ProveOut(ProveOutArgs),
+    /// Calibrates a touch probe from tables of touches: trigger delay, stylus, run-out
+    #[command(subcommand)]
+    CalibrateProbe(CalibrateProbeCommand),
+    /// Computes the features of a part from touches of a probe, or writes the program that makes these
+    Measure(MeasureArgs),
     /// What works on an axis
     #[command(flatten)]
     Axis(AxisCommand),

@@ -2,6 +2,7 @@
 
 use std::str::from_utf8;
 
+use leadscrew::probe::ProbeEnd;
 use leadscrew::supervisor::{Fault, State};
 
 /// How many faults there are.
@@ -89,4 +90,23 @@ mod tests {
             assert!(name.chars().all(is_plain), "{name}");
         }
     }
+}
+
+/// Names of [`ProbeEnd`]s, in the order of their numbers.
+pub const PROBE_ENDS: [&str; ProbeEnd::ALL.len()] = [
+    "touched",
+    "no-touch",
+    "already-touching",
+    "touched-on-retract",
+    "still-touching",
+    "interrupted",
+    "encoder-lost",
+    "unasked",
+];
+
+/// The name of an end of probing.
+#[must_use]
+pub fn probe_end_name(end: ProbeEnd) -> &'static str {
+    let place = ProbeEnd::ALL.iter().position(|other| *other == end);
+    place.map_or("", |place| PROBE_ENDS[place])
 }

@@ -21,6 +21,7 @@ pub mod map_file;
 pub mod monitor;
 pub mod parallel;
 pub mod plot;
+mod probed_axis;
 mod progress;
 pub mod recorded;
 pub mod recording;

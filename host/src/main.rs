@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use leadscrew_host::cli::{Cli, Command};
 use leadscrew_host::command::axis::OnAxis;
 use leadscrew_host::command::{
-    accuracy, autotune, axis, calibrate_encoder, correct, demo, deviations, identify, plan, replay,
-    sim, sim_encoder, tracking, tune_filter,
+    accuracy, autotune, axis, calibrate_axis, calibrate_encoder, calibrate_probe, correct, demo,
+    deviations, identify, measure, plan, prove_out, replay, sim, sim_encoder, tracking,
+    tune_filter,
 };
 
 fn main() -> ExitCode {
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         Some(Command::Plan(args)) => plan::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::CalibrateEncoder(args)) => calibrate_encoder::run(&args),
+        Some(Command::CalibrateAxis(args)) => calibrate_axis::run(&args),
         Some(Command::SimEncoder(args)) => sim_encoder::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Tracking(args)) => tracking::run(&args),
@@ -33,6 +35,9 @@ fn main() -> ExitCode {
         Some(Command::TuneFilter(args)) => tune_filter::run(&args),
         Some(Command::Correct(args)) => correct::run(&args),
         Some(Command::Deviations(args)) => deviations::run(&args),
+        Some(Command::ProveOut(args)) => prove_out::run(&args),
+        Some(Command::CalibrateProbe(command)) => calibrate_probe::run(&command),
+        Some(Command::Measure(args)) => measure::run(&args),
         Some(Command::Axis(command)) => axis::run(&port, &command),
     };
     match done {

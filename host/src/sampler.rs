@@ -131,6 +131,7 @@ impl<'a> Sampler<'a> {
             edges: [&self.times, &[]],
             illegal,
             overrun: false,
+            touching: false,
             index,
             probe: None,
             home: None,

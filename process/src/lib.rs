@@ -10,3 +10,5 @@ mod csv_text;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;
+pub mod probing;
+pub mod prove_out;

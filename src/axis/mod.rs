@@ -4,6 +4,7 @@ mod experiment;
 mod io;
 mod place;
 mod planned;
+mod probing;
 mod reconfigure;
 mod request;
 mod sources;
@@ -26,6 +27,7 @@ use crate::homing::Homing;
 use crate::identification::experiment::Experiment;
 use crate::output::{ActiveLimits, Output};
 use crate::params::AxisConfig;
+use crate::probe::Probe;
 use crate::setpoint::sources::Sources;
 use crate::supervisor::{ClearError, Context, Permit, Review, Situation, Supervisor};
 use crate::units::{Command, Position};
@@ -42,6 +44,8 @@ pub struct Axis<'m> {
     output: Output,
     /// There is an experiment: itself it is a long way off in memory.
     has_experiment: bool,
+    /// Ticks matter to the probe: it is as far off.
+    has_probe: bool,
     /// What the last tick gave; before the first one an axis that is off.
     outputs: Outputs,
     compensation: Compensation<'m>,
@@ -53,6 +57,7 @@ pub struct Axis<'m> {
     sources: Sources,
     estimators: Estimators,
     config: AxisConfig,
+    probe: Probe,
 }
 
 impl<'m> Axis<'m> {
@@ -77,6 +82,8 @@ impl<'m> Axis<'m> {
             output: Output::new(config.output),
             experiment: None,
             has_experiment: false,
+            probe: Probe::new(config.probe),
+            has_probe: false,
             config,
             tick: 0,
             outputs: Outputs::default(),
@@ -138,9 +145,9 @@ impl<'m> Axis<'m> {
             .read_master(reference.master.as_ref(), lines.master_lost);
         // Homing goes by the sources, which go on from where it ends: what they said last is the setpoint of either.
         let is_homing = self.homing.is_active();
-        let moving = if is_homing {
-            self.step_homing(&observation, inputs, permit);
-            self.sources.is_moving() || self.homing.is_active()
+        let has_probe = self.has_probe;
+        let moving = if is_homing | has_probe {
+            self.step_guided(&observation, inputs, permit)
         } else {
             self.sources.advance(tick, reference, permit)
         };
@@ -198,8 +205,12 @@ impl<'m> Axis<'m> {
         }
         let outputs = &self.outputs;
         let is_faulted = outputs.fault.is_some();
-        if observation.has_index() | inputs.lines.encoder_lost | is_faulted {
+        let is_touched = observation.has_probe() & !has_probe;
+        if observation.has_index() | inputs.lines.encoder_lost | is_faulted | is_touched {
             self.watch_place(&observation, inputs.lines.encoder_lost);
+            if is_touched {
+                self.watch_probe(&observation);
+            }
         }
         let outputs = &mut self.outputs;
         outputs.reported = self.compensation.reported(position);
@@ -322,6 +333,7 @@ impl<'m> Axis<'m> {
         self.sources.reconfigure(&config.limits, &config.sources);
         self.compensation.reconfigure(config.compensation);
         self.homing.reconfigure(config.homing);
+        self.probe.reconfigure(config.probe);
         let is_travel_new = config.travel != self.config.travel;
         self.config = *config;
         if is_travel_new {

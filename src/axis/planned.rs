@@ -16,7 +16,7 @@ impl Axis<'_> {
         if !self.supervisor.is_following() {
             return Err(QueueError::Disabled);
         }
-        if self.homing.is_active() || self.sources.is_threading() {
+        if self.homing.is_active() || self.probe.is_active() || self.sources.is_threading() {
             return Err(QueueError::Busy);
         }
         self.sources.queue(plan, start, self.tick.wrapping_sub(1))

@@ -6,6 +6,7 @@ use super::Axis;
 use super::experiment::StartError;
 use crate::homing::HomeRefused;
 use crate::identification::program::Program;
+use crate::probe::{ProbeOrder, ProbeRefused};
 use crate::setpoint::plan::Plan;
 use crate::setpoint::sources::{GearError, SelectError, Source};
 use crate::setpoint::thread::{ThreadOrder, ThreadRefusal};
@@ -41,6 +42,8 @@ pub enum Request {
     ClearFault,
     /// Forgets the warnings.
     ClearWarnings,
+    /// [`Axis::probe_towards`].
+    Probe(ProbeOrder),
 }
 
 /// Why a request was refused; the axis goes on as it was.
@@ -60,6 +63,8 @@ pub enum Refused {
     Experiment(StartError),
     /// Clearing.
     Clear(ClearError),
+    /// Probing.
+    Probe(ProbeRefused),
 }
 
 impl fmt::Display for Refused {
@@ -72,6 +77,7 @@ impl fmt::Display for Refused {
             Self::Thread(error) => error.fmt(f),
             Self::Experiment(error) => error.fmt(f),
             Self::Clear(error) => error.fmt(f),
+            Self::Probe(error) => error.fmt(f),
         }
     }
 }
@@ -107,6 +113,9 @@ impl Axis<'_> {
             Request::ClearWarnings => {
                 self.supervisor_mut().clear_warnings();
                 Ok(())
+            }
+            Request::Probe(order) => {
+                (self.probe_towards(order).map(|_| ())).map_err(Refused::Probe)
             }
         }
     }

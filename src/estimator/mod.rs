@@ -207,7 +207,7 @@ fn checked_window(window: u32) -> Result<u32, RangeError> {
 }
 
 /// `value` / 2^`bits`, to nearest. `bits` is 1 to 62 and |value| stays below 2⁶².
-const fn shift_rounded(value: i64, bits: u32) -> i64 {
+pub(crate) const fn shift_rounded(value: i64, bits: u32) -> i64 {
     value
         .wrapping_add(1_i64.wrapping_shl(bits.wrapping_sub(1)))
         .wrapping_shr(bits)

@@ -27,6 +27,7 @@ impl AxisParams {
         visitor.section("thread", &mut self.sources.thread);
         visitor.section("compensation", &mut self.compensation);
         visitor.section("homing", &mut self.homing);
+        visitor.section("probe", &mut self.probe);
         visitor.section("supervisor", &mut self.supervisor);
     }
 }

@@ -146,6 +146,10 @@ refusals! {
     Engaged = 50, "Disengage it first.";
     /// The encoder would be faster at full command than the board's inputs can follow; it was not taken.
     TooFastForInputs = 51, "Lower motion.full_command_feed_mm_per_min or motion.counts_per_mm, or raise tick_hz; docs/board.md has the limits.";
+    /// The target is where the axis stands.
+    NoWay = 52, "Choose a target at least a count away.";
+    /// At that feed the axis would go on too far after a touch.
+    TooMuchOvertravel = 53, "Probe slower, or raise probe.max_overtravel_mm as far as the probe allows.";
 }
 
 impl core::fmt::Display for Refusal {

@@ -33,6 +33,8 @@ pub const CAN_EXPERIMENT: u32 = 1 << 4;
 pub const CAN_SCOPE: u32 = 1 << 5;
 /// The encoder can be learned.
 pub const CAN_LEARN: u32 = 1 << 6;
+/// There is an input for a touch probe.
+pub const CAN_PROBE: u32 = 1 << 7;
 
 messages! {
     /// A reply.
@@ -64,7 +66,7 @@ messages! {
             /// The last tick.
             tick: u32,
             /// What it can do: bit 0 homing, 1 parameters, 2 telemetry records, 3 store, 4 experiments, 5 scope and stream,
-            /// 6 map learning; other bits are of later versions.
+            /// 6 map learning, 7 probing; other bits are of later versions.
             capabilities: u32,
             /// Room for what is recorded, bytes.
             work_memory: u32,
@@ -315,6 +317,37 @@ messages! {
             address: u32,
             /// Of a panic the end of the file's path; else empty.
             file: &'a str,
+        }
+        /// What the probe came to since the axis was switched on.
+        Touch = 18 {
+            /// The last tick.
+            tick: u32,
+            /// Ends of probing, and touches that nobody sought; wraps.
+            ends: u16,
+            /// Touches; wraps.
+            touches: u16,
+            /// Edges of the probe that were none of a touch; wraps.
+            glitches: u16,
+            /// Number of the last [`ProbeEnd`](crate::probe::ProbeEnd); 0: none yet.
+            end: u8,
+            /// There was a touch in it, whose figures follow; else they are 0.
+            has_touch: bool,
+            /// Where the axis was at the contact, nm from the origin.
+            position_nm: i64,
+            /// 1σ of it by the encoder's edges and the trigger's jitter, pm.
+            sigma_pm: u32,
+            /// The place of the encoder's shaft, 2⁻¹⁶ d as it counts.
+            raw: i64,
+            /// Velocity at the contact, µm/min.
+            velocity_um_per_min: i32,
+            /// Tick that took the probe's edge in.
+            touch_tick: u32,
+            /// The edge by the timer, clocks since its first tick without wrap.
+            time: i64,
+            /// How far beyond the contact the axis went, nm.
+            overtravel_nm: i64,
+            /// Edges that the place was found from; 0: by the count alone.
+            edges: u32,
         }
     }
 }

@@ -264,6 +264,18 @@ messages! {
             /// 0: disengages; 1: engages.
             engaged: u8,
         }
+        /// Goes towards a place until the probe touches, then back: what came of it is asked for by
+        /// [`Touch`](Request::Touch).
+        Probe = 58 {
+            /// How far to go for a touch, as of a move.
+            target_nm: i64,
+            /// Feed, µm/min.
+            feed_um_per_min: u32,
+            /// How far back after the touch, nm.
+            retract_nm: u32,
+        }
+        /// Asks what probing came to: [`Touch`](super::reply::Reply::Touch).
+        Touch = 59 {}
     }
 }
 
@@ -326,6 +338,7 @@ impl Request<'_> {
                 | Self::ReadScope { .. }
                 | Self::Learning { .. }
                 | Self::Learned { .. }
+                | Self::Touch { .. }
         )
     }
 }

@@ -32,6 +32,11 @@ impl<B> AxisControl<B> {
                 self.told_fault = Some(told);
             }
         }
+        let report = self.axis.probe().report();
+        let told = (report.touches, report.ends);
+        if self.told_touch != told && enqueue(&mut self.ends.touches, *report).is_ok() {
+            self.told_touch = told;
+        }
     }
 
     pub(super) fn note_index(&mut self, capture: &Capture<'_>) {

@@ -49,6 +49,8 @@ pub struct AxisControl<B> {
     index_count: u32,
     /// The fault that was told, and how many came after it.
     told_fault: Option<(u32, u32)>,
+    /// Touches and ends of the probe that were told.
+    told_touch: (u16, u16),
     /// The tick that comes next.
     tick: u32,
     /// Ticks missed since the last one.
@@ -78,6 +80,7 @@ impl<B> AxisControl<B> {
             indexes: Indexes::default(),
             index_count: 0,
             told_fault: None,
+            told_touch: (0, 0),
             tick: 0,
             missed: 0,
             was_overlong: false,

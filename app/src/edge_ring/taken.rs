@@ -73,6 +73,7 @@ impl<const WORDS: usize> Taken<WORDS> {
             edges,
             illegal: 0,
             overrun: self.overrun,
+            touching: false,
             index: None,
             probe: None,
             home: None,

@@ -5,6 +5,7 @@ use heapless::Vec;
 use leadscrew::axis;
 use leadscrew::capture::Unwrapper;
 use leadscrew::params::AxisConfig;
+use leadscrew::probe;
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::reply::Reply;
 use leadscrew::protocol::request::Request;
@@ -19,6 +20,7 @@ use super::memory::{Lent, MapPlaces};
 use crate::axis_control::{self, What};
 use crate::captures::CaptureReceiver;
 use crate::input_filter::InputsInForce;
+use crate::modbus::ProbeLatch;
 use crate::queues::LinkEnds;
 use crate::report::Report;
 use crate::safe_state::record::Record;
@@ -47,6 +49,10 @@ pub(super) struct Bench<F: NorFlash> {
     pub seen: Seen,
     pub report: Report,
     pub first_fault: Option<FirstFault>,
+    /// What the probe came to.
+    pub probe: probe::Report,
+    /// The last touch of it, whatever came after.
+    pub latch: Option<ProbeLatch>,
     /// A tick was lost on the way while an experiment was recorded.
     pub is_torn: bool,
     /// An experiment was ordered, and its first tick not seen yet; or it is being recorded.
@@ -82,6 +88,13 @@ impl<F: NorFlash> Bench<F> {
     pub fn fetch(&mut self) {
         while let Some(fault) = self.ends.faults.dequeue() {
             self.first_fault = Some(fault);
+        }
+        while let Some(report) = self.ends.touches.dequeue() {
+            self.latch = report
+                .touch
+                .map(|touch| self.latch_of(&report, &touch))
+                .or(self.latch);
+            self.probe = report;
         }
         self.fetch_scope();
         self.learn();
@@ -162,6 +175,7 @@ impl<F: NorFlash> Port for Bench<F> {
         match *request {
             Request::FaultPage {} => say(&self.fault_page()),
             Request::Counters {} => say(&self.counts()),
+            Request::Touch {} => say(&self.touch()),
             Request::LastReset {} => say(&self.last_reset()),
             Request::Restart {} => self.wants_restart = true,
             Request::SaveParameters {} => self.save_parameters(settings)?,

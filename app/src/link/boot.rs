@@ -221,6 +221,8 @@ impl<F: NorFlash> Parts<F> {
             seen: Seen::default(),
             report: TickReport::default(),
             first_fault: None,
+            probe: leadscrew::probe::Report::default(),
+            latch: None,
             is_torn: false,
             is_recording: false,
             batch: None,

@@ -1,8 +1,10 @@
 //! What the axis counted, and its fault, as the link tells of them.
 
 use embedded_storage::nor_flash::NorFlash;
+use leadscrew::probe::{Report, Touch};
 use leadscrew::protocol::reply::Reply;
 use leadscrew::supervisor::FirstFault;
+use leadscrew::units::Position;
 
 use super::bench::Bench;
 use crate::safe_state::reason::Reason;
@@ -45,6 +47,39 @@ impl<F: NorFlash> Bench<F> {
             setpoint_velocity: context.setpoint_velocity.to_bits(),
             following_error: context.following_error.to_bits(),
             command: context.command.to_bits(),
+        }
+    }
+
+    pub fn touch(&self) -> Reply<'static> {
+        let Report {
+            touches,
+            ends,
+            end,
+            touch,
+            glitches,
+        } = self.probe;
+        let mm = |position: Position| self.scale.mm_from_counts(position.to_num());
+        let nm = |position| libm::round(mm(position) * 1e6) as i64;
+        let sigma = |touch: Touch| {
+            let counts = libm::sqrt(touch.variance.to_num());
+            libm::round(self.scale.mm_from_counts(counts) * 1e9) as u32
+        };
+        let feed = |touch: Touch| self.scale.feed_from_velocity(touch.velocity.to_num());
+        Reply::Touch {
+            tick: self.seen.tick,
+            ends,
+            touches,
+            glitches,
+            end: end.map_or(0, |end| end as u8),
+            has_touch: touch.is_some(),
+            position_nm: touch.map_or(0, |touch| nm(touch.position)),
+            sigma_pm: touch.map_or(0, sigma),
+            raw: touch.map_or(0, |touch| touch.raw.to_bits()),
+            velocity_um_per_min: touch.map_or(0, |touch| libm::round(feed(touch) * 1e3) as i32),
+            touch_tick: touch.map_or(0, |touch| touch.tick),
+            time: touch.map_or(0, |touch| touch.time),
+            overtravel_nm: touch.map_or(0, |touch| nm(touch.overtravel)),
+            edges: touch.map_or(0, |touch| touch.edges),
         }
     }
 

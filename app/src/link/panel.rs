@@ -1,12 +1,14 @@
 //! What other lines than the link show and set: the axis as a panel.
 
 use embedded_storage::nor_flash::NorFlash;
+use leadscrew::probe::{Report, Touch};
 use leadscrew::protocol::refusal::Refusal;
 use leadscrew::protocol::service::{Passed, Ticket};
 use leadscrew::settings::Settings;
 
 use super::Link;
-use crate::modbus::{Panel, View};
+use super::bench::Bench;
+use crate::modbus::{Panel, ProbeLatch, View};
 
 impl<F: NorFlash> Panel for Link<F> {
     fn view(&self) -> View {
@@ -19,7 +21,7 @@ impl<F: NorFlash> Panel for Link<F> {
             is_leased: service.holder().is_some(),
             counts: bench.counters.read(),
             first_fault: bench.first_fault,
-            probe: None,
+            probe: bench.latch,
             capabilities: bench.capabilities,
         }
     }
@@ -46,5 +48,15 @@ impl<F: NorFlash> Panel for Link<F> {
     fn save(&mut self) -> Result<(), Refusal> {
         let Self { service, bench, .. } = self;
         bench.save_parameters(service.settings())
+    }
+}
+
+impl<F: NorFlash> Bench<F> {
+    pub(super) fn latch_of(&self, report: &Report, touch: &Touch) -> ProbeLatch {
+        let mm = self.scale.mm_from_counts(touch.position.to_num());
+        ProbeLatch {
+            count: report.touches,
+            position_nm: libm::round(mm * 1e6) as i64,
+        }
     }
 }

@@ -20,7 +20,7 @@ mod guard;
 mod interlock;
 mod record;
 mod report;
-mod screw;
+pub mod screw;
 mod set;
 mod settings;
 

@@ -7,13 +7,16 @@ use leadscrew::units::Position;
 
 use super::{CHUNK, Error, Kind, Permission, Saved, Store};
 
-const POINT: usize = 16;
+/// Bytes of a point.
+pub const POINT: usize = 16;
 // No point lies across two chunks.
 const _: () = assert!(CHUNK.is_multiple_of(POINT));
 /// Bytes of the longest table.
 const MOST_BYTES: usize = POINTS.1 * POINT;
 
-fn to_bytes(point: &ScrewPoint) -> [u8; POINT] {
+/// The bytes of a point.
+#[must_use]
+pub fn to_bytes(point: &ScrewPoint) -> [u8; POINT] {
     let [forward, backward] = point.error.map(|error| error.to_bits().to_le_bytes());
     let mut bytes = [0; POINT];
     bytes[..8].copy_from_slice(&point.position.to_bits().to_le_bytes());
@@ -22,7 +25,9 @@ fn to_bytes(point: &ScrewPoint) -> [u8; POINT] {
     bytes
 }
 
-fn of_bytes(bytes: &[u8; POINT]) -> ScrewPoint {
+/// The point of such bytes.
+#[must_use]
+pub fn of_bytes(bytes: &[u8; POINT]) -> ScrewPoint {
     let [a, b, c, d, e, f, g, h, forward @ .., _, _, _, _] = *bytes;
     let backward = bytes.last_chunk().copied().unwrap_or_default();
     ScrewPoint {

@@ -112,6 +112,7 @@ impl References {
             edges: [&[], &[]],
             illegal: 0,
             overrun: false,
+            touching: false,
             index: self.master_index,
             probe: None,
             home: None,

@@ -4,7 +4,9 @@ mod experiment;
 mod learning;
 mod live;
 mod motion;
+
 mod parameters;
+mod probing;
 mod recorded;
 mod records;
 mod scope;
@@ -14,6 +16,7 @@ pub use experiment::{ExperimentPhase, ExperimentStatus};
 pub use learning::{Learned, LearningPhase, LearningStatus};
 pub use live::Live;
 pub use parameters::{Parameter, Value};
+pub use probing::{ProbeStatus, Touch};
 pub use records::{Records, Samples};
 pub use scope::{ScopePhase, ScopeStatus};
 pub use store::{FaultPage, Kind, LastReset, Stored, TickCounters};

@@ -13,7 +13,7 @@ use crate::status::{NM_PER_MM, Status, UM_PER_MM};
 
 /// An axis whose setpoint is as near as this has arrived: below any encoder, above every rounding.
 const ARRIVED_NM: u64 = 50;
-const WATCH: &str = "Look how the axis stands, and give the order anew";
+pub(super) const WATCH: &str = "Look how the axis stands, and give the order anew";
 
 impl Axis {
     /// Finds the origin, and waits until it is found.
@@ -159,7 +159,7 @@ impl Axis {
     }
 
     /// Adds to a refusal what was asked in numbers, and the limits that it ran into.
-    fn explained<T>(
+    pub(super) fn explained<T>(
         &mut self,
         outcome: Result<T, Error>,
         asked: impl FnOnce() -> String,
@@ -188,14 +188,14 @@ impl Axis {
 }
 
 /// Somebody else may take enable back.
-fn still_enabled(status: &Status, what: &'static str) -> Result<(), Error> {
+pub(super) fn still_enabled(status: &Status, what: &'static str) -> Result<(), Error> {
     match status.state() {
         Some(State::Disabled | State::Stopping) => Err(Error::DisabledMeanwhile { what }),
         _ => Ok(()),
     }
 }
 
-fn nm(mm: f64) -> Result<i64, Error> {
+pub(super) fn nm(mm: f64) -> Result<i64, Error> {
     let nm = (mm * NM_PER_MM).round();
     // The farthest target of the protocol is 1 km; the axis knows its own.
     if nm.abs() <= 1e15 {
@@ -209,7 +209,7 @@ fn nm(mm: f64) -> Result<i64, Error> {
     }
 }
 
-fn feed(mm_per_min: f64) -> Result<i32, Error> {
+pub(super) fn feed(mm_per_min: f64) -> Result<i32, Error> {
     let um = (mm_per_min * UM_PER_MM).round();
     if um.abs() <= f64::from(i32::MAX) {
         Ok(um as i32)
@@ -218,7 +218,7 @@ fn feed(mm_per_min: f64) -> Result<i32, Error> {
     }
 }
 
-const fn no_feed(value: f64, range: &'static str) -> Error {
+pub(super) const fn no_feed(value: f64, range: &'static str) -> Error {
     Error::NoNumber {
         what: "the feed",
         value,

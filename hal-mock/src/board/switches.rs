@@ -106,9 +106,14 @@ impl Switches {
 /// The latch of an event at a share of the tick between the sampling instant `before` (count and timer) and
 /// `capture`.
 pub fn latch(before: (u32, u32), capture: &Capture<'_>, share: f64) -> Latch {
+    let elapsed = capture.sampled_at.wrapping_sub(before.1);
+    let time = before.1.wrapping_add((f64::from(elapsed) * share) as u32);
+    latch_at(before, capture, time)
+}
+
+/// The same of an event at a time.
+pub fn latch_at(before: (u32, u32), capture: &Capture<'_>, time: u32) -> Latch {
     let (count, sampled_at) = before;
-    let elapsed = capture.sampled_at.wrapping_sub(sampled_at);
-    let time = sampled_at.wrapping_add((f64::from(elapsed) * share) as u32);
     let moved = capture.count.wrapping_sub(count).cast_signed();
     let edges = capture.edges.into_iter().flatten();
     let (all, passed) = edges.fold((0_u32, 0_i32), |(all, passed), &edge| {
@@ -120,6 +125,8 @@ pub fn latch(before: (u32, u32), capture: &Capture<'_>, share: f64) -> Latch {
     let gone = if all == moved.unsigned_abs() {
         passed * moved.signum()
     } else {
+        let elapsed = capture.sampled_at.wrapping_sub(sampled_at).max(1);
+        let share = f64::from(time.wrapping_sub(sampled_at)) / f64::from(elapsed);
         (f64::from(moved) * share) as i32
     };
     Latch {

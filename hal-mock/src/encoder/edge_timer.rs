@@ -70,6 +70,12 @@ impl EdgeTimer {
         self.newest = self.newest.saturating_sub(clocks);
     }
 
+    /// The timer when a share of the tick last ended was over.
+    pub fn time_at(&self, share: f64) -> u32 {
+        let back = (1.0 - share) * self.per_tick as f64;
+        (self.start.wrapping_sub((back as i64).cast_unsigned()) >> 32) as u32
+    }
+
     const fn whole_start(&self) -> u32 {
         (self.start >> 32) as u32
     }

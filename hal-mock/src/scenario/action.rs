@@ -81,6 +81,15 @@ pub enum Ask {
     },
     /// Looks for the home switch and the index.
     Home,
+    /// Probes towards a position, and goes back after the touch.
+    Probe {
+        /// How far to go for a touch, mm.
+        towards_mm: f64,
+        /// How fast, mm/min.
+        feed_mm_per_min: f64,
+        /// How far back after it, mm.
+        retract_mm: f64,
+    },
     /// Follows another source of setpoints.
     Select(Source),
     /// Engages the gear, or disengages it.
@@ -166,6 +175,8 @@ pub enum Trouble {
     MasterLost,
     /// The encoder's index line is broken.
     IndexLost,
+    /// A pulse on the line of the touch probe, shorter than a tick, once.
+    ProbeGlitch,
     /// The parameter store is found to be corrupt.
     StoreCorrupt,
     /// The axis misses ticks, once: the machine goes on under the last command.

@@ -3,6 +3,7 @@
 use leadscrew::axis::{Axis, Request};
 use leadscrew::identification::program::{Bounds, Program, Segment, command};
 use leadscrew::params::{AxisConfig, AxisParams};
+use leadscrew::probe::ProbeOrder;
 use leadscrew::setpoint::planner::{Planner, Timed};
 use leadscrew::setpoint::sources::Source;
 use leadscrew::setpoint::thread::{ThreadOrder, ThreadPhase};
@@ -49,6 +50,7 @@ impl Seen {
             origin: axis.homing().origin(),
             is_planned: in_control
                 && !axis.homing().is_active()
+                && !axis.probe().is_active()
                 && axis.source() == Source::Trajectory
                 && axis.thread_phase() == ThreadPhase::Idle
                 && axis.experiment().is_none(),
@@ -121,6 +123,17 @@ impl Operator {
             Ask::ClearFault => return Ok(Order::Axis(Request::ClearFault)),
             Ask::ClearWarnings => return Ok(Order::Axis(Request::ClearWarnings)),
             Ask::Home => return Ok(Order::Axis(Request::Home)),
+            Ask::Probe {
+                towards_mm,
+                feed_mm_per_min,
+                retract_mm,
+            } => {
+                return Ok(Order::Axis(Request::Probe(ProbeOrder {
+                    target: self.raw(seen, "towards_mm", towards_mm)?,
+                    feed: self.feed(feed_mm_per_min)?,
+                    retract: self.distance("retract_mm", retract_mm)?,
+                })));
+            }
             Ask::Select(source) => return Ok(Order::Axis(Request::Select(source))),
             Ask::Engage(engaged) => return Ok(Order::Axis(Request::Engage(engaged))),
             Ask::ArmThread(order) => {

@@ -53,6 +53,7 @@ sections! {
         drive_lines: board.drive_lines,
         switches: board.switches,
         brake: board.brake,
+        touch_probe: board.probe,
         spindle: spindle,
     }
 }

@@ -7,6 +7,8 @@ const SWITCHES: &[Setting] = &[
     setting("switches", "limit_low_mm", -60.0),
     setting("switches", "home_mm", -34.0),
     setting("switches", "limit_high_mm", 600.0),
+    // A part on the table, for whoever probes; the axis may be driven into it.
+    setting("touch_probe", "surface_mm", 15.0),
 ];
 
 const fn setting(section: &'static str, key: &'static str, value: f64) -> Setting {

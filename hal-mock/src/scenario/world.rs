@@ -82,6 +82,12 @@ impl World {
                 self.board.miss(*ticks);
                 return Ok(());
             }
+            Trouble::ProbeGlitch => {
+                if let Some(probe) = &mut self.board.probe {
+                    probe.disturb();
+                }
+                return Ok(());
+            }
             Trouble::SignalLoss => self.board.break_encoder(Fault::LineLoss, 0..ticks)?,
             _ => {}
         }
@@ -185,7 +191,7 @@ impl World {
                 }
                 Trouble::IndexLost => self.index_lost = true,
                 Trouble::StoreCorrupt => self.store_corrupt = true,
-                Trouble::Encoder(_) | Trouble::MissedTicks { .. } => {}
+                Trouble::Encoder(_) | Trouble::MissedTicks { .. } | Trouble::ProbeGlitch => {}
             }
         }
         self.board.trouble = wrong;

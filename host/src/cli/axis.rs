@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, SetupArgs};
+use super::{BodeArgs, JsonArgs, NullOffsetArgs, ProbeArgs, RecordArgs, ScopeArgs, SetupArgs};
+use super::{
+    BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, ScrewTableCommand, SetupArgs,
+};
 
 /// What works on an axis.
 #[derive(Debug, Subcommand)]
@@ -25,6 +28,8 @@ pub enum AxisCommand {
     Home(JsonArgs),
     /// Moves the axis to a place, or by a distance, and waits until it is there
     Move(MoveArgs),
+    /// Goes towards a place until the touch probe touches, then back, once or many times
+    Probe(ProbeArgs),
     /// Moves the axis until Ctrl-C, or for a time
     Jog(JogArgs),
     /// Feed hold: stops the axis, which remembers its target
@@ -42,6 +47,9 @@ pub enum AxisCommand {
     /// Shows, sets, saves and restores what is set on the axis
     #[command(subcommand)]
     Params(ParamsCommand),
+    /// Writes, reads and erases the screw error table that the axis keeps
+    #[command(subcommand)]
+    ScrewTable(ScrewTableCommand),
     /// Runs a script of moves and checks, for acceptance
     Run(RunArgs),
     /// Keeps the axis of --port qemu or sim running, for other commands to reach it by --port tcp:…

@@ -3,14 +3,18 @@
 pub mod accuracy;
 pub mod autotune;
 pub mod axis;
+pub mod calibrate_axis;
 pub mod calibrate_encoder;
+pub mod calibrate_probe;
 mod choice;
 pub mod correct;
 pub mod demo;
 pub mod deviations;
 pub mod identify;
 mod map_figures;
+pub mod measure;
 pub mod plan;
+pub mod prove_out;
 pub mod replay;
 pub mod sim;
 pub mod sim_encoder;

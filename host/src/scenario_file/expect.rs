@@ -1,10 +1,11 @@
 //! What must come of a run.
 
+use leadscrew::probe::ProbeEnd;
 use leadscrew::supervisor::{Fault, State};
 use toml::de::DeTable;
 
 use super::words::{Key, Value, read_all};
-use crate::fault_names::{FAULT_COUNT, FAULT_NAMES, STATES};
+use crate::fault_names::{FAULT_COUNT, FAULT_NAMES, PROBE_ENDS, STATES};
 use crate::toml_file::Complaint;
 
 /// Words of `fault`: none, then [`FAULT_NAMES`].
@@ -59,6 +60,14 @@ pub enum Figure {
     OutputPeak,
     /// Actions that were refused.
     Refused,
+    /// Touches of the probe.
+    Touches,
+    /// Edges of the probe that were none of a touch.
+    Glitches,
+    /// How far the axis went beyond the last contact, mm.
+    Overtravel,
+    /// Stated 1σ of the last touch, d.
+    TouchSigma,
 }
 
 /// How a figure is limited.
@@ -210,6 +219,34 @@ pub const LIMITS: &[Limit] = &[
         Bound::Exactly,
         "actions that the axis refuses; left out: none",
     ),
+    limit(
+        "touches",
+        "touches",
+        Figure::Touches,
+        Bound::Exactly,
+        "touches of the probe, sought or not",
+    ),
+    limit(
+        "glitches",
+        "edges",
+        Figure::Glitches,
+        Bound::Exactly,
+        "edges of the probe that were none of a touch",
+    ),
+    limit(
+        "overtravel_mm",
+        "mm",
+        Figure::Overtravel,
+        Bound::AtMost,
+        "how far the axis went beyond the last contact",
+    ),
+    limit(
+        "touch_sigma_d",
+        "d",
+        Figure::TouchSigma,
+        Bound::AtMost,
+        "stated 1σ of the place of the last touch",
+    ),
 ];
 
 /// The first fault of the run.
@@ -233,6 +270,24 @@ pub const FINAL_STATE: Key = Key {
     default: Some(f64::NAN),
 };
 
+/// Words of `probed`: the ends by number, then none.
+const PROBED_WORDS: [&str; PROBE_ENDS.len() + 1] = {
+    let mut words = ["none"; PROBE_ENDS.len() + 1];
+    let mut index = 0;
+    while index < PROBE_ENDS.len() {
+        words[index] = PROBE_ENDS[index];
+        index += 1;
+    }
+    words
+};
+/// How the last probing ended.
+pub const PROBED: Key = Key {
+    name: "probed",
+    what: "how the last probing ended; left out: it does not matter",
+    value: Value::Word(&PROBED_WORDS),
+    default: Some(f64::NAN),
+};
+
 /// `[expect]`.
 #[derive(Clone, Debug)]
 pub struct Expectations {
@@ -244,6 +299,8 @@ pub struct Expectations {
     pub warnings: Vec<Fault>,
     /// The state at the end, if it matters.
     pub final_state: Option<State>,
+    /// How the last probing ended, or that there was none, if it matters.
+    pub probed: Option<Option<ProbeEnd>>,
 }
 
 impl Expectations {
@@ -253,7 +310,7 @@ impl Expectations {
         let keys: Vec<&Key> = LIMITS
             .iter()
             .map(|limit| &limit.key)
-            .chain([&FAULT, &FINAL_STATE, &WARNING])
+            .chain([&FAULT, &FINAL_STATE, &WARNING, &PROBED])
             .collect();
         let values = read_all(table, &keys, &[], "[expect]", 0..0)?;
         let (limits, words) = values.split_at(LIMITS.len());
@@ -274,6 +331,7 @@ impl Expectations {
             final_state: place(words[1])
                 .and_then(|place| STATES.get(place))
                 .map(|(state, _)| *state),
+            probed: place(words[3]).map(|place| ProbeEnd::ALL.get(place).copied()),
         })
     }
 }

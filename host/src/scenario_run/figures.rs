@@ -1,5 +1,6 @@
 //! Figures of a run.
 
+use leadscrew::probe::Report;
 use leadscrew::supervisor::{Fault, FaultSet, FirstFault, State};
 use leadscrew_hal_mock::invariants::Violation;
 use leadscrew_hal_mock::scenario::{Action, Timed};
@@ -44,6 +45,10 @@ pub struct Figures {
     pub violation: Option<Violation>,
     /// State at the end.
     pub final_state: State,
+    /// What the probe came to.
+    pub probe: Report,
+    /// How far the axis went beyond the last contact, mm.
+    pub overtravel_mm: Option<f64>,
 }
 
 /// A fault and what it led to.
@@ -75,6 +80,11 @@ impl Figures {
                 .count(),
             stops: stops(record, timeline),
             violation: record.violation,
+            probe: record.probe,
+            overtravel_mm: record
+                .probe
+                .touch
+                .map(|touch| touch.overtravel.to_num::<f64>() / record.counts_per_mm),
             ..Self::default()
         };
         let (Some(first), Some(last)) = (record.ticks.first(), record.ticks.last()) else {
@@ -136,6 +146,13 @@ impl Figures {
             Figure::StoppedWay => Some(stop?.stopped?.1),
             Figure::OutputPeak => Some(self.output_peak),
             Figure::Refused => Some(self.refused as f64),
+            Figure::Touches => Some(self.probe.touches.into()),
+            Figure::Glitches => Some(self.probe.glitches.into()),
+            Figure::Overtravel => self.overtravel_mm,
+            Figure::TouchSigma => {
+                let touch = self.probe.touch?;
+                Some(touch.variance.to_num::<f64>().sqrt())
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Whether a run was what its file expects.
 
+use leadscrew::probe::ProbeEnd;
 use serde::Serialize;
 
 use super::Figures;
-use crate::fault_names::{fault_name, state_name};
+use crate::fault_names::{fault_name, probe_end_name, state_name};
 use crate::scenario_file::expect::{Bound, Expectations, POSITION_TOLERANCE_MM};
 
 /// An expectation and what was found.
@@ -45,6 +46,15 @@ pub fn judge(expect: &Expectations, figures: &Figures) -> Vec<Verdict> {
             expected: state_name(state).to_owned(),
             found: state_name(figures.final_state).to_owned(),
             met: figures.final_state == state,
+        });
+    }
+    if let Some(end) = expect.probed {
+        let named = |end: Option<ProbeEnd>| end.map_or("none", probe_end_name).to_owned();
+        verdicts.push(Verdict {
+            name: "probed",
+            expected: named(end),
+            found: named(figures.probe.end),
+            met: figures.probe.end == end,
         });
     }
     for warning in &expect.warnings {

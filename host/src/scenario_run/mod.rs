@@ -11,6 +11,7 @@ use leadscrew::compensation::{
 use leadscrew::encoder_map::EncoderMap;
 use leadscrew::estimator::Variances;
 use leadscrew::identification::experiment::{Ending, Experiment};
+use leadscrew::probe::Report;
 use leadscrew::setpoint::thread::SpindleTrouble;
 use leadscrew::supervisor::FirstFault;
 use leadscrew::units::Position;
@@ -55,6 +56,8 @@ pub struct Record {
     pub violation: Option<Violation>,
     /// Why homing failed and what was wrong with the spindle, for people.
     pub notes: Vec<String>,
+    /// What the probe came to.
+    pub probe: Report,
     /// Digest of inputs and outputs of the axis.
     pub digest: u64,
     /// Control rate, Hz.
@@ -161,6 +164,7 @@ fn run_with<'s>(
         faults,
         violation: runner.violation(),
         notes: notes(&runner.axis, experiment),
+        probe: *runner.axis.probe().report(),
         digest: runner.digest(),
         tick_hz: scenario.tick_hz,
         counts_per_mm: scenario.plant().machine.mount.counts_per_mm,
@@ -184,8 +188,9 @@ fn notes(axis: &Axis<'_>, experiment: Option<Option<Ending>>) -> Vec<String> {
         };
         format!("spindle: {what}")
     });
+    let probe = axis.probe().report().end.map(|end| format!("probe: {end}"));
     let experiment = experiment.map(|found| format!("experiment: {}", ending(found)));
-    [homing, distance, spindle, experiment]
+    [homing, distance, probe, spindle, experiment]
         .into_iter()
         .flatten()
         .collect()

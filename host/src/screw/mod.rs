@@ -16,6 +16,7 @@ use leadscrew::setpoint::profile::PlanError;
 use leadscrew::setpoint::trajectory::QueueError;
 use leadscrew::units::Position;
 use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_process::axis_calibration::{Direction, Reading, Runs};
 
 use self::bench::Bench;
 
@@ -165,26 +166,75 @@ impl<'m> ScrewCase<'m> {
     where
         'm: 't,
     {
-        let mut bench = Bench::new(self, compensation, table)?;
         let mut survey = Survey {
             readings: targets.iter().map(|place| (*place, [0.0; 2])).collect(),
             standing: 0.0,
         };
-        let (Some(first), Some(last)) = (targets.first(), targets.last()) else {
-            return Ok(survey);
-        };
         let share = 1.0 / runs.max(1) as f64;
-        for _ in 0..runs.max(1) {
+        let standing = self.visit(compensation, table, targets, runs, |_, at, way, error| {
+            survey.readings[at].1[way] += share * error;
+        })?;
+        survey.standing = standing;
+        Ok(survey)
+    }
+
+    /// The same reading by reading, as a laser writes them down for a calibration after ISO 230-2.
+    ///
+    /// # Errors
+    /// [`ScrewFailure`].
+    pub fn runs<'t>(
+        &self,
+        compensation: CompensationParams,
+        table: Option<ScrewTable<'t>>,
+        targets: &[f64],
+        runs: usize,
+    ) -> Result<Runs, ScrewFailure>
+    where
+        'm: 't,
+    {
+        let per_mm = self.axis.motion.counts_per_mm;
+        let mut all = Runs::default();
+        self.visit(compensation, table, targets, runs, |run, at, way, error| {
+            all.readings.push(Reading {
+                target_mm: targets[at] / per_mm,
+                direction: Direction::BOTH[way],
+                run: run as u32 + 1,
+                deviation_um: 1000.0 * error / per_mm,
+                temperature_c: None,
+            });
+        })?;
+        Ok(all)
+    }
+
+    /// Goes to every target from below and, back again, from above, and tells `each` run, target, side and carriage less place,
+    /// d. The largest setpoint less encoder at rest.
+    fn visit<'t>(
+        &self,
+        compensation: CompensationParams,
+        table: Option<ScrewTable<'t>>,
+        targets: &[f64],
+        runs: usize,
+        mut each: impl FnMut(usize, usize, usize, f64),
+    ) -> Result<f64, ScrewFailure>
+    where
+        'm: 't,
+    {
+        let mut bench = Bench::new(self, compensation, table)?;
+        let mut standing = 0.0;
+        let (Some(first), Some(last)) = (targets.first(), targets.last()) else {
+            return Ok(standing);
+        };
+        for run in 0..runs.max(1) {
             bench.go_to(first - RUN_UP_D)?;
-            for (target, [forward, _]) in &mut survey.readings {
-                *forward += share * bench.read_at(*target, &mut survey.standing)?;
+            for (at, target) in targets.iter().enumerate() {
+                each(run, at, 0, bench.read_at(*target, &mut standing)?);
             }
             bench.go_to(last + RUN_UP_D)?;
-            for (target, [_, backward]) in survey.readings.iter_mut().rev() {
-                *backward += share * bench.read_at(*target, &mut survey.standing)?;
+            for (at, target) in targets.iter().enumerate().rev() {
+                each(run, at, 1, bench.read_at(*target, &mut standing)?);
             }
         }
-        Ok(survey)
+        Ok(standing)
     }
 }
 

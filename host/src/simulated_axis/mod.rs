@@ -13,7 +13,7 @@ use leadscrew::axis::Inputs;
 use leadscrew::compensation::table::{POINTS, Stretch};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::protocol::reply::{
-    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
+    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_PROBE, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
 };
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
@@ -232,7 +232,8 @@ impl Firmware {
                     | CAN_SAVE
                     | CAN_EXPERIMENT
                     | CAN_SCOPE
-                    | CAN_LEARN,
+                    | CAN_LEARN
+                    | CAN_PROBE,
                 work_memory: 4 * WORDS as u32,
                 lead_ticks: 4,
             },

@@ -3,6 +3,7 @@
 mod accuracy;
 mod autotune;
 mod axis;
+mod calibrate_axis;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
@@ -12,9 +13,11 @@ mod deviations;
 mod help;
 mod identify;
 mod machine_files;
+mod measure;
 mod outputs;
 mod pictures;
 mod plan;
+mod prove_out;
 mod replay;
 mod replay_estimator;
 mod replay_faults;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use leadscrew_host::scenario_file::actions::{ASKED, FOR, Spec, TROUBLES};
-use leadscrew_host::scenario_file::expect::{FAULT, FINAL_STATE, LIMITS, WARNING};
+use leadscrew_host::scenario_file::expect::{FAULT, FINAL_STATE, LIMITS, PROBED, WARNING};
 use leadscrew_host::scenario_file::words::{Key, Value};
 
 use super::root;
@@ -57,7 +57,7 @@ fn tables() -> Result<String, std::fmt::Error> {
         };
         writeln!(text, "| `{name}` | {unit} | {what} |")?;
     }
-    for Key { name, what, .. } in [FAULT, WARNING, FINAL_STATE] {
+    for Key { name, what, .. } in [FAULT, WARNING, FINAL_STATE, PROBED] {
         writeln!(text, "| `{name}` | a word | {what} |")?;
     }
     writeln!(text, "\nFaults: {}.", FAULT.allowed())?;

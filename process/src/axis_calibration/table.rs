@@ -13,6 +13,7 @@ use std::fmt::Write;
 use leadscrew::compensation::table::{MAX_ERROR_D, POINTS};
 use leadscrew::compensation::{ScrewError, ScrewPoint, ScrewTable, Stretch};
 use leadscrew::units::Position;
+use leadscrew_app::store::screw;
 use leadscrew_nc::source::Complaint;
 use serde::Serialize;
 
@@ -145,6 +146,32 @@ impl ErrorTable {
         let mut memory = vec![Stretch::EMPTY; points.len().saturating_sub(1)];
         ScrewTable::build(&points, &mut memory).map_err(|error| error.to_string())?;
         Ok(points)
+    }
+
+    /// The bytes that a board keeps of it: see [`Self::to_screw`].
+    ///
+    /// # Errors
+    /// As of [`Self::to_screw`].
+    pub fn to_stored(&self, counts_per_mm: f64) -> Result<Vec<u8>, String> {
+        let points = self.to_screw(counts_per_mm)?;
+        Ok(points.iter().flat_map(screw::to_bytes).collect())
+    }
+
+    /// The table of such bytes.
+    ///
+    /// # Errors
+    /// A message: bytes that are no whole points.
+    pub fn of_stored(bytes: &[u8], counts_per_mm: f64) -> Result<Self, String> {
+        let (points, rest) = bytes.as_chunks::<{ screw::POINT }>();
+        if !rest.is_empty() {
+            return Err(format!(
+                "{} bytes are no screw table: a point has {}",
+                bytes.len(),
+                screw::POINT
+            ));
+        }
+        let points: Vec<_> = points.iter().map(screw::of_bytes).collect();
+        Ok(Self::of_screw(&points, counts_per_mm))
     }
 
     /// The table whose on-board points are `points`.

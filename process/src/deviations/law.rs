@@ -204,6 +204,23 @@ impl Law {
             })
     }
 
+    /// The law with all vectors multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut law = self.clone();
+        for value in law.tables.iter_mut().flat_map(|table| &mut table.values) {
+            *value = *value * factor;
+        }
+        for function in &mut law.functions {
+            function.constant *= factor;
+            function.slope *= factor;
+            for wave in &mut function.waves {
+                wave.amplitude *= factor;
+            }
+        }
+        law
+    }
+
     /// The law without one parameter.
     #[must_use]
     pub fn without(&self, component: Component) -> Self {

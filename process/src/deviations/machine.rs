@@ -201,6 +201,15 @@ impl Machine {
         self
     }
 
+    /// The same machine with all its deviations multiplied.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        for unit in self.workpiece.iter_mut().chain(&mut self.tool) {
+            unit.law = unit.law.scaled(factor);
+        }
+        self
+    }
+
     /// The same machine without deviations.
     #[must_use]
     pub fn perfect(mut self) -> Self {

@@ -12,7 +12,7 @@ use super::touch::Touch;
 const NAMED_PART: f64 = 0.3;
 
 /// A feature as equations of its touches.
-pub(super) trait Model {
+pub(crate) trait Model {
     /// What messages call it.
     const WHAT: &'static str;
 
@@ -36,7 +36,7 @@ pub(super) trait Model {
 }
 
 /// The unknowns as found.
-pub(super) struct Adjusted {
+pub(crate) struct Adjusted {
     pub unknowns: Vec<f64>,
     /// Empty without any 1σ.
     pub covariance: DMatrix<f64>,
@@ -57,7 +57,7 @@ impl Adjusted {
 }
 
 /// Fits a model to touches.
-pub(super) fn adjust<M: Model>(
+pub(crate) fn adjust<M: Model>(
     model: &M,
     touches: &[Touch],
     settings: &Settings,

@@ -9,7 +9,7 @@
 //!
 //! Reading order: [`touch`], [`fitted`], then a file a feature; [`part`] is what a user's files say, measured.
 
-mod adjustment;
+pub(crate) mod adjustment;
 pub mod bore;
 pub mod circle;
 mod error;

@@ -1,5 +1,7 @@
 //! Machines and encoders by name: a built-in TOML file, and those of users added to it.
 
+mod entries;
+mod fitted;
 mod read;
 
 use leadscrew::units::PAPER_GRAVITY_M_S2;

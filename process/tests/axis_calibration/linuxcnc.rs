@@ -130,7 +130,7 @@ fn run_linuxcnc(folder: &Path) {
         let limits =
             "MAX_VELOCITY = 200\nMAX_ACCELERATION = 5000\nMIN_LIMIT = -20\nMAX_LIMIT = 200\n";
         configuration += &format!(
-            "[AXIS_{axis}]\n{limits}[JOINT_{joint}]\nTYPE = LINEAR\nHOME = 0\n{limits}HOME_SEQUENCE = 0\n\
+            "[AXIS_{axis}]\n{limits}[JOINT_{joint}]\nTYPE = LINEAR\nHOME = 0\n{limits}BACKLASH = 0.5\nHOME_SEQUENCE = 0\n\
              COMP_FILE = {file}\nCOMP_FILE_TYPE = {}\n",
             comp_type.number()
         );

@@ -76,8 +76,10 @@ proptest! {
             });
         }
         let read = ErrorTable::read(&table.to_csv()).unwrap();
-        let screw = read.to_screw(counts_per_mm).unwrap();
-        let back = ErrorTable::of_screw(&screw, counts_per_mm);
+        let stored = read.to_stored(counts_per_mm).unwrap();
+        prop_assert_eq!(stored.len(), 16 * table.points.len());
+        prop_assert!(ErrorTable::of_stored(&stored[1..], counts_per_mm).is_err());
+        let back = ErrorTable::of_stored(&stored, counts_per_mm).unwrap();
         for (one, other) in table.points.iter().zip(&back.points) {
             // 2⁻¹⁶ d of a place, 2⁻²⁰ d of an error, 0.1 nm of the file.
             assert_near(one.position_mm, other.position_mm, 2e-5 / counts_per_mm);

@@ -37,7 +37,7 @@ pub struct Sums {
 }
 
 /// Largest weight of a sample.
-const MOST_WEIGHT: u16 = 4;
+pub const MOST_WEIGHT: u16 = 4;
 
 impl Sums {
     #[inline]

@@ -20,14 +20,14 @@
 //! it is the rounding of a sample's place to 2⁻¹³ d. What noise of the samples comes to is in `docs/theory.md`.
 
 pub mod config;
-mod fit;
+pub(crate) mod fit;
 mod found;
-mod geometry;
+pub(crate) mod geometry;
 mod low_speed;
-mod ratio;
+pub(crate) mod ratio;
 mod regular;
 mod spread;
-mod window;
+pub(crate) mod window;
 
 pub use config::Config;
 

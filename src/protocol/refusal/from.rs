@@ -3,6 +3,7 @@
 use super::Refusal;
 use crate::axis::{ReconfigureError, Refused, StartError};
 use crate::homing::HomeRefused;
+use crate::probe::ProbeRefused;
 use crate::setpoint::plan::PlanError;
 use crate::setpoint::planner::PlannerError;
 use crate::setpoint::sources::{GearError, SelectError};
@@ -21,8 +22,22 @@ impl From<Refused> for Refusal {
             Refused::Select(SelectError::Moving) => Self::StillMoving,
             Refused::Select(SelectError::Engaged) => Self::Engaged,
             Refused::Experiment(error) => error.into(),
+            Refused::Probe(error) => error.into(),
             // Threads and gears are not asked for over the link yet.
             Refused::Gear(_) | Refused::Thread(_) => Self::Busy,
+        }
+    }
+}
+
+impl From<ProbeRefused> for Refusal {
+    fn from(error: ProbeRefused) -> Self {
+        match error {
+            ProbeRefused::NotReady => Self::NotEnabled,
+            ProbeRefused::Moving => Self::StillMoving,
+            ProbeRefused::NoWay => Self::NoWay,
+            ProbeRefused::FeedOutOfRange => Self::FeedOutOfRange,
+            ProbeRefused::Overtravel { .. } => Self::TooMuchOvertravel,
+            ProbeRefused::BeyondTravel => Self::BeyondTravel,
         }
     }
 }

@@ -158,6 +158,17 @@ impl Inner {
             Request::ClearFault {} => axis(port, axis::Request::ClearFault),
             Request::ClearWarnings {} => axis(port, axis::Request::ClearWarnings),
             Request::Home {} => axis(port, axis::Request::Home),
+            Request::Probe {
+                target_nm,
+                feed_um_per_min,
+                retract_nm,
+            } => {
+                Self::check_planned(seen)?;
+                let order = self
+                    .mover
+                    .probe_order(seen, target_nm, feed_um_per_min, retract_nm)?;
+                axis(port, axis::Request::Probe(order))
+            }
             Request::Select { source } => axis(port, axis::Request::Select(source_of(source)?)),
             Request::Engage { engaged } => axis(port, axis::Request::Engage(switch(engaged)?)),
             Request::Stop {} if !seen.is_planned => port.order(&Order::Enable(false)),
@@ -234,8 +245,14 @@ impl Inner {
         seen: &Seen,
         port: &mut dyn Port,
     ) -> Result<Passed, Refusal> {
+        Self::check_planned(seen)?;
+        self.mover.order(motion, seen, port)
+    }
+
+    /// Whether plans may move the axis.
+    const fn check_planned(seen: &Seen) -> Result<(), Refusal> {
         if seen.is_planned {
-            return self.mover.order(motion, seen, port);
+            return Ok(());
         }
         Err(match seen.state {
             State::Ready | State::Moving => Refusal::Busy,

@@ -3,6 +3,7 @@
 use super::port::{Order, Passed, Port, Seen, Ticket};
 use crate::axis;
 use crate::params::AxisConfig;
+use crate::probe::ProbeOrder;
 use crate::protocol::refusal::Refusal;
 use crate::protocol::request::Request;
 use crate::setpoint::planner::{Planner, PlannerError, Timed};
@@ -226,6 +227,25 @@ impl Mover {
             Motion::Stop => self.planner.stop(start),
         };
         planned.map_err(PlannerError::into)
+    }
+
+    /// What is to be probed.
+    pub(super) fn probe_order(
+        &self,
+        seen: &Seen,
+        target_nm: i64,
+        feed_um: u32,
+        retract_nm: u32,
+    ) -> Result<ProbeOrder, Refusal> {
+        if self.start.is_some() {
+            return Err(Refusal::Busy);
+        }
+        let retract = self.scale.counts_from_mm(f64::from(retract_nm) / NM_PER_MM);
+        Ok(ProbeOrder {
+            target: self.raw(seen, target_nm)?,
+            feed: self.feed(f64::from(feed_um))?,
+            retract: Position::saturating_from_num(retract),
+        })
     }
 
     /// The raw position of a coordinate.

@@ -69,6 +69,7 @@ impl Seen {
             travel: axis.travel(),
             is_planned: in_control
                 && !axis.homing().is_active()
+                && !axis.probe().is_active()
                 && axis.source() == Source::Trajectory
                 && axis.thread_phase() == ThreadPhase::Idle
                 && axis.experiment().is_none(),

@@ -117,6 +117,12 @@ impl Follower {
             && self.next_acceleration == 0
     }
 
+    /// The setpoint of the last step.
+    #[must_use]
+    pub fn now(&self) -> Setpoint {
+        self.setpoint()
+    }
+
     /// See [`Config::stopping_distance`].
     #[must_use]
     pub fn stopping_distance(&self, setpoint: &Setpoint) -> Position {

@@ -1,7 +1,7 @@
 //! `leadscrew identity`: what the axis is.
 
 use leadscrew::protocol::reply::{
-    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
+    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_PROBE, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
 };
 use leadscrew_client::Axis;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use crate::cli::JsonArgs;
 use crate::command::{print, print_json};
 use crate::error::CommandError;
 
-const CAN: [(u32, &str); 7] = [
+const CAN: [(u32, &str); 8] = [
     (CAN_HOME, "homing"),
     (CAN_SET, "parameters"),
     (CAN_RECORD, "records"),
@@ -18,6 +18,7 @@ const CAN: [(u32, &str); 7] = [
     (CAN_EXPERIMENT, "experiments"),
     (CAN_SCOPE, "scope"),
     (CAN_LEARN, "map learning"),
+    (CAN_PROBE, "probing"),
 ];
 
 /// What an axis is.

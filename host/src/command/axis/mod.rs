@@ -15,10 +15,12 @@ pub mod motion;
 mod null_offset;
 pub mod params;
 mod person;
+pub mod probe;
 pub mod record;
 pub mod recording;
 pub mod run;
 pub mod scope;
+pub mod screw_table;
 pub mod serve;
 mod setup;
 pub mod status;
@@ -41,9 +43,11 @@ pub fn run(port: &PortArgs, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Run(args) => Some(crate::axis::script::Script::read(&args.script)?),
         AxisCommand::Serve(args) => return serve::run(port, args, &interrupted),
         AxisCommand::Move(args) => motion::check_move(args).map(|()| None)?,
+        AxisCommand::Probe(args) => probe::check(args).map(|()| None)?,
         AxisCommand::Override(args) => motion::percent(args).map(|_| None)?,
         AxisCommand::Jog(args) => motion::time(args).map(|_| None)?,
         AxisCommand::Params(command) => params::check(command).map(|()| None)?,
+        AxisCommand::ScrewTable(command) => screw_table::check(command).map(|_| None)?,
         _ => None,
     };
     let mut axis = open(port, &interrupted)?;
@@ -64,6 +68,7 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Disable(args) => motion::disable(axis, args),
         AxisCommand::Home(args) => motion::home(axis, args),
         AxisCommand::Move(args) => motion::go(axis, args),
+        AxisCommand::Probe(args) => probe::run(axis, args),
         AxisCommand::Jog(args) => motion::jog(axis, args),
         AxisCommand::Hold(args) => motion::hold(axis, args),
         AxisCommand::Resume(args) => motion::resume(axis, args),
@@ -72,6 +77,7 @@ fn on(axis: &mut Axis, command: &AxisCommand) -> Result<(), CommandError> {
         AxisCommand::Counters(args) => counters::run(axis, args),
         AxisCommand::Restart(args) => motion::restart(axis, args),
         AxisCommand::Params(command) => params::run(axis, command),
+        AxisCommand::ScrewTable(command) => screw_table::run(axis, command),
         AxisCommand::Setup(args) => setup::run(axis, args),
         AxisCommand::NullOffset(args) => null_offset::run(axis, args),
         AxisCommand::Scope(args) => scope::run(axis, args),

@@ -173,6 +173,20 @@ pub const ASKED: &[Spec] = &[
         |_| Ask::Home,
     ),
     Spec::ask(
+        "probe",
+        "goes towards a position until the probe touches, then back",
+        &[
+            number("towards_mm", "mm", -1e6, 1e6, "how far to go for a touch"),
+            number("feed_mm_per_min", "mm/min", 0.0, 1e6, "how fast"),
+            number("retract_mm", "mm", 0.0, 1e6, "how far back after it").or(0.0),
+        ],
+        |values| Ask::Probe {
+            towards_mm: values[0],
+            feed_mm_per_min: values[1],
+            retract_mm: values[2],
+        },
+    ),
+    Spec::ask(
         "select",
         "follows another source of setpoints",
         &[Key {

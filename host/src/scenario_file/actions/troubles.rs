@@ -177,6 +177,12 @@ pub const TROUBLES: &[Spec] = &[
         |_| Trouble::StoreCorrupt,
     ),
     Spec::event(
+        "probe-glitch",
+        "a pulse on the line of the touch probe, shorter than a tick",
+        &[],
+        |_| Trouble::ProbeGlitch,
+    ),
+    Spec::event(
         "missed-ticks",
         "the axis misses ticks; the machine goes on under the last command",
         &[whole("ticks", 1, 1000, "how many")],

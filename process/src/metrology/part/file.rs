@@ -1,18 +1,17 @@
 //! The file of a part: TOML.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use leadscrew_nc::source::{Complaint, read_toml};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::kinds::{
-    AxisFile, CircleFile, CoaxialityFile, DistanceFile, LONGEST_MM, PassesFile,
-    PerpendicularityFile, PlaneFile, SettingFile, ShoulderFile, ToolFile, TurnedFile, checked,
+use super::kinds::{AxisFile, CircleFile, PlaneFile, ShoulderFile, TurnedFile};
+use super::means::{ProbeFile, ProgramFile, TableFile};
+use super::others::{
+    CoaxialityFile, DistanceFile, PassesFile, PerpendicularityFile, SettingFile, ToolFile,
 };
-use super::{Feature, Kind, Part, Planned, Probe, ProgramPlan, Table, direction};
-use crate::metrology::Axis;
+use super::{Feature, Kind, Part, Planned, Probe};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -49,65 +48,15 @@ struct PartFile {
     setting: Vec<Spanned<SettingFile>>,
 }
 
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ProbeFile {
-    sigma_mm: Option<Spanned<f64>>,
-    radius_mm: Option<Spanned<f64>>,
-    pretravel_mm: Option<Spanned<f64>>,
-    #[serde(default)]
-    pretravel_of_mm: BTreeMap<Spanned<String>, Spanned<f64>>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TableFile {
-    #[serde(default)]
-    x_is: XIs,
-    #[serde(default)]
-    places_of: PlacesOf,
-}
-
-#[derive(Default, Deserialize, PartialEq)]
-#[serde(rename_all = "snake_case")]
-enum XIs {
-    #[default]
-    Radius,
-    Diameter,
-}
-
-#[derive(Default, Deserialize, PartialEq)]
-#[serde(rename_all = "snake_case")]
-enum PlacesOf {
-    #[default]
-    Surface,
-    Stylus,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ProgramFile {
-    safe_axis: Option<Axis>,
-    safe_mm: Option<Spanned<f64>>,
-    approach_mm: Option<Spanned<f64>>,
-    overtravel_mm: Option<Spanned<f64>>,
-    feed_mm_per_min: Option<Spanned<f64>>,
-    travel_mm_per_min: Option<Spanned<f64>>,
-    log: Option<Spanned<String>>,
-}
-
 /// Reads the file of a part.
 ///
 /// # Errors
 /// Where and what is wrong: a key, a number out of its range, a name twice or of nothing.
 pub fn read(text: &str) -> Result<Part, Complaint> {
     let file: PartFile = read_toml(text)?;
-    let probe = read_probe(text, &file.probe)?;
-    let program = read_program(text, &file.program)?;
-    let table = Table {
-        x_is_diameter: file.table.x_is == XIs::Diameter,
-        is_of_stylus: file.table.places_of == PlacesOf::Stylus,
-    };
+    let probe = file.probe.read(text)?;
+    let program = file.program.read(text)?;
+    let table = file.table.read();
     let mut list = List {
         text,
         features: Vec::new(),
@@ -120,79 +69,6 @@ pub fn read(text: &str) -> Result<Part, Complaint> {
         probe,
         table,
         program,
-    })
-}
-
-fn read_probe(text: &str, file: &ProbeFile) -> Result<Probe, Complaint> {
-    let length = |value: &Option<Spanned<f64>>, key, range| match value {
-        Some(value) => checked(text, value, key, "mm", range).map(Some),
-        None => Ok(None),
-    };
-    let mut pretravel_of = [[None; 2]; 3];
-    for (key, value) in &file.pretravel_of_mm {
-        let direction = direction(key.get_ref());
-        let Some((direction, axis)) = direction.and_then(|one| Some((one, Axis::along(one)?)))
-        else {
-            let message = format!("`{}`: expected a direction such as \"+x\"", key.get_ref());
-            return Err(Complaint::at(text, &key.span(), message));
-        };
-        let plus = usize::from(direction[axis.index()] > 0.0);
-        let value = checked(text, value, "pretravel_of_mm", "mm", (-10.0, 10.0))?;
-        pretravel_of[axis.index()][plus] = Some(value);
-    }
-    Ok(Probe {
-        sigma_mm: length(&file.sigma_mm, "sigma_mm", (1e-9, 100.0))?,
-        radius_mm: length(&file.radius_mm, "radius_mm", (0.0, 1000.0))?.unwrap_or(0.0),
-        pretravel_mm: length(&file.pretravel_mm, "pretravel_mm", (-10.0, 10.0))?.unwrap_or(0.0),
-        pretravel_of,
-    })
-}
-
-fn read_program(text: &str, file: &ProgramFile) -> Result<ProgramPlan, Complaint> {
-    let or = |value: &Option<Spanned<f64>>, key, unit, range, default| match value {
-        Some(value) => checked(text, value, key, unit, range),
-        None => Ok(default),
-    };
-    let safe = file.safe_mm.as_ref();
-    let safe = safe.map(|safe| checked(text, safe, "safe_mm", "mm", (-LONGEST_MM, LONGEST_MM)));
-    let log = match &file.log {
-        None => "probe.txt".to_owned(),
-        Some(log) => {
-            let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-/".contains(letter);
-            if log.get_ref().is_empty() || !log.get_ref().chars().all(is_plain) {
-                let message = "log: expected a file name of letters, digits and . _ - /, which a comment of the program can hold";
-                return Err(Complaint::at(text, &log.span(), message));
-            }
-            log.get_ref().clone()
-        }
-    };
-    let feed = (0.1, 10_000.0);
-    Ok(ProgramPlan {
-        safe_axis: file.safe_axis.unwrap_or(Axis::Z),
-        safe_mm: safe.transpose()?,
-        approach_mm: or(&file.approach_mm, "approach_mm", "mm", (0.01, 100.0), 2.0)?,
-        overtravel_mm: or(
-            &file.overtravel_mm,
-            "overtravel_mm",
-            "mm",
-            (0.01, 100.0),
-            2.0,
-        )?,
-        feed_mm_per_min: or(
-            &file.feed_mm_per_min,
-            "feed_mm_per_min",
-            "mm/min",
-            feed,
-            100.0,
-        )?,
-        travel_mm_per_min: or(
-            &file.travel_mm_per_min,
-            "travel_mm_per_min",
-            "mm/min",
-            feed,
-            1000.0,
-        )?,
-        log,
     })
 }
 

@@ -8,6 +8,8 @@ mod expand;
 mod file;
 mod kinds;
 pub mod log;
+mod means;
+mod others;
 pub mod program;
 pub mod report;
 pub mod touches;

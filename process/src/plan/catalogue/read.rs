@@ -1,71 +1,14 @@
-//! The file as it is written, checked on its way into the catalogue.
+//! A file, checked on its way into the catalogue.
 
-use leadscrew::units::{PAPER_GRAVITY_M_S2, RangeError, checked, discrete_mm};
+use leadscrew::units::{PAPER_GRAVITY_M_S2, checked};
 use leadscrew_nc::source::{Complaint, read_toml};
-use serde::Deserialize;
 use toml::Spanned;
 
 use super::super::cycle::{
     ACCELERATION_M_S2, COUNTS_PER_MM, FEED_MM_PER_MIN, JERK_M_S3, Kinematics,
 };
+use super::entries::{AxisEntry, EncoderEntry, File, MachineEntry, SpindleEntry};
 use super::{Catalogue, Encoder, FittedEncoder, Machine, MachineAxis, Spindle, is_same};
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    encoder: Vec<EncoderEntry>,
-    #[serde(default)]
-    machine: Vec<MachineEntry>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EncoderEntry {
-    name: Spanned<String>,
-    maker: Option<String>,
-    lines: Spanned<[f64; 2]>,
-    max_rpm: Option<Spanned<f64>>,
-    max_line_khz: Option<Spanned<f64>>,
-    source: Option<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MachineEntry {
-    name: Spanned<String>,
-    source: Option<String>,
-    #[serde(default)]
-    axis: Vec<AxisEntry>,
-    #[serde(default)]
-    spindle: Vec<SpindleEntry>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AxisEntry {
-    name: Spanned<String>,
-    max_feed_mm_per_min: Spanned<f64>,
-    overload_g: Option<Spanned<f64>>,
-    least_overload_g: Option<Spanned<f64>>,
-    acceleration_m_s2: Option<Spanned<f64>>,
-    max_jerk_m_s3: Option<Spanned<f64>>,
-    counts_per_mm: Option<Spanned<f64>>,
-    travel_mm: Option<Spanned<f64>>,
-    encoder: Option<Spanned<String>>,
-    lines: Option<Spanned<f64>>,
-    assumed: Option<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SpindleEntry {
-    name: Spanned<String>,
-    max_rpm: Spanned<f64>,
-    encoder: Spanned<String>,
-    lines: Option<Spanned<f64>>,
-    assumed: Option<String>,
-}
 
 const LINES: (f64, f64) = (1.0, 1e7);
 const RPM: (f64, f64) = (1e-3, 1e6);
@@ -337,42 +280,4 @@ const fn overload_range() -> (f64, f64) {
         ACCELERATION_M_S2.0 / PAPER_GRAVITY_M_S2,
         ACCELERATION_M_S2.1 / PAPER_GRAVITY_M_S2,
     )
-}
-
-impl FittedEncoder {
-    /// An encoder of the catalogue in its place; without `lines` it is the only number that it comes with.
-    ///
-    /// # Errors
-    /// A message: lines that it does not come with, or none chosen where there are several.
-    pub fn new(encoder: &Encoder, lines: Option<f64>, travel_mm: f64) -> Result<Self, String> {
-        let [least, most] = encoder.lines;
-        let name = &encoder.name;
-        let lines = match lines {
-            Some(lines) if (least..=most).contains(&lines) => lines,
-            Some(lines) => {
-                return Err(format!(
-                    "{name} with {lines} lines: it comes with {least} to {most}"
-                ));
-            }
-            None if least == most => least,
-            None => {
-                return Err(format!(
-                    "{name} comes with {least} to {most} lines: say which by lines"
-                ));
-            }
-        };
-        Ok(Self {
-            encoder: encoder.clone(),
-            lines,
-            travel_mm,
-        })
-    }
-
-    /// Resolution k, d/mm, of a linear axis (P1, 8).
-    ///
-    /// # Errors
-    /// [`RangeError`] for a travel that no axis has.
-    pub fn counts_per_mm(&self) -> Result<f64, RangeError> {
-        discrete_mm(self.travel_mm, self.lines).map(|discrete| 1.0 / discrete)
-    }
 }

@@ -83,6 +83,7 @@ fn inputs<'a>(dice: &mut Dice, times: &'a [u32; EDGES]) -> Inputs<'a> {
         edges: [older, newer],
         illegal: dice.roll() as u16,
         overrun: dice.one_in(2),
+        touching: dice.one_in(2),
         index: dice.latch(),
         probe: dice.latch(),
         home: dice.latch(),

@@ -14,7 +14,7 @@ use heapless::spsc::Consumer;
 use leadscrew::compensation::Stretch;
 use leadscrew::compensation::table::POINTS;
 use leadscrew::protocol::reply::{
-    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
+    CAN_EXPERIMENT, CAN_HOME, CAN_LEARN, CAN_PROBE, CAN_RECORD, CAN_SAVE, CAN_SCOPE, CAN_SET,
 };
 use leadscrew::protocol::service::Identity;
 use leadscrew::settings::Settings;
@@ -103,7 +103,8 @@ fn identity() -> Identity {
             | CAN_SAVE
             | CAN_EXPERIMENT
             | CAN_SCOPE
-            | CAN_LEARN,
+            | CAN_LEARN
+            | CAN_PROBE,
         work_memory: (4 * memory::WORDS) as u32,
         lead_ticks: LEAD_TICKS,
     }

@@ -1,0 +1,600 @@
+//! Probing: a touch probe says that it touches, the encoder's edges say where.
+//!
+//! ```text
+//!  level      ▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁┌▔▔▔▔▔▔▔▔▔▔▔▔▔▔▔┐▁▁▁▁▁▁▁▁
+//!  approach   ───────────────────►│               │
+//!                       latch ────┘ debounce      │
+//!  stop                           └────►──╮       │
+//!  overtravel                     ◄──────►│       │
+//!  retract              ◄───────────────────────────╯
+//!  brake             ╰──┘
+//!  samples            · · · · · · · · ·|· ·          quadratic, read at the contact
+//! ```
+//!
+//! The axis goes towards a target at a steady feed. The board latches the timer at the probe's edge; the contact was the
+//! trigger's delay before. Where the shaft was then is found a few ticks later, when the debounce is over and there
+//! are edges after the contact as well as before it: by a quadratic through them all at their times, with the encoder's map
+//! ([`fit`]). Only then the axis stops, by a jerk-limited ramp, and goes back by the distance that was asked for. How far it goes
+//! on at most after a contact is known before it moves ([`Config::overtravel`]): a feed that needs more than is allowed is refused.
+//!
+//! What goes wrong is a result ([`ProbeEnd`]): a probe that touches before the axis moves, no touch on the whole way, a
+//! touch on the way back, an axis that is stopped or whose encoder is lost. A touch while something else moves the axis is told as
+//! [`ProbeEnd::Unasked`] and, by `stop_on_touch`, stops it; its place is that of the motion estimated, to a count or so.
+//!
+//! The 1σ of a place is that of the fit by the edges' noise and by what the map leaves, its slow error taken as one wave a
+//! revolution, with the trigger's jitter at the velocity of the touch.
+
+pub mod config;
+mod failure;
+mod fit;
+mod history;
+mod touch;
+mod trigger;
+
+pub use config::{Config, ProbeParams};
+pub use failure::{ProbeEnd, ProbeRefused};
+pub use touch::{Report, Touch};
+
+use self::config::TIME_FRAC;
+use self::history::History;
+use self::trigger::{Edge, Trigger};
+use crate::capture::Observation;
+use crate::edges::EdgeReader;
+use crate::estimator::Estimate;
+use crate::setpoint::Setpoint;
+use crate::setpoint::follower::Follower;
+use crate::setpoint::travel::TravelLimits;
+use crate::units::{Position, Variance, Velocity};
+
+/// What probing is at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Stage {
+    /// Nothing.
+    #[default]
+    Idle = 0,
+    /// On the way to the touch.
+    Approach = 1,
+    /// It touched: coming to rest.
+    Stop = 2,
+    /// On the way back.
+    Retract = 3,
+    /// Coming to rest at the end of the way back.
+    Brake = 4,
+    /// Coming to rest for another reason.
+    Halt = 5,
+}
+
+/// What is to be probed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProbeOrder {
+    /// How far to go for a touch, raw d.
+    pub target: Position,
+    /// Feed until the touch, d/tick; not negative.
+    pub feed: Velocity,
+    /// Way back from where the axis came to rest, d; not negative.
+    pub retract: Position,
+}
+
+/// What probing sees in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a> {
+    /// The capture, unwrapped.
+    pub observation: &'a Observation<'a>,
+    /// Reads the edges; it has taken note of the tick.
+    pub edges: &'a EdgeReader<'a>,
+    /// What is estimated of the motion.
+    pub estimate: &'a Estimate,
+    /// The tick.
+    pub tick: u32,
+}
+
+/// An edge that may become a touch.
+#[derive(Clone, Copy, Debug)]
+struct Noted {
+    edge: Edge,
+    /// The tick that took it in.
+    tick: u32,
+    /// When it came, as [`History::now`] counts; none if that was too long ago to be measured.
+    instant: Option<u32>,
+}
+
+/// Probing, and what the probe showed.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    config: Config,
+    stage: Stage,
+    order: ProbeOrder,
+    /// 1 or −1.
+    direction: i64,
+    follower: Follower,
+    trigger: Trigger,
+    /// The edge that a touch began with, until its place is found.
+    edge: Option<Noted>,
+    /// What to end with once the axis stands.
+    end: ProbeEnd,
+    touch: Option<Touch>,
+    /// The touch has yet to be told where it is for users.
+    is_unplaced: bool,
+    settling: u32,
+    /// Last place of the retract, raw d.
+    back: Position,
+    report: Report,
+    history: History,
+}
+
+impl Probe {
+    /// Nothing was probed.
+    #[must_use]
+    pub const fn new(config: Config) -> Self {
+        Self {
+            config,
+            stage: Stage::Idle,
+            order: ProbeOrder {
+                target: Position::ZERO,
+                feed: Velocity::ZERO,
+                retract: Position::ZERO,
+            },
+            direction: 1,
+            follower: Follower::new(config.follower),
+            trigger: Trigger::new(),
+            edge: None,
+            end: ProbeEnd::Interrupted,
+            touch: None,
+            is_unplaced: false,
+            settling: 0,
+            back: Position::ZERO,
+            report: Report {
+                touches: 0,
+                ends: 0,
+                end: None,
+                touch: None,
+                glitches: 0,
+            },
+            history: History::new(),
+        }
+    }
+
+    /// Takes another configuration; probing that runs goes on by it.
+    pub fn reconfigure(&mut self, config: Config) {
+        self.config = config;
+        self.follower.reconfigure(config.follower);
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub const fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// True while probing commands the setpoint.
+    #[must_use]
+    #[inline]
+    pub const fn is_active(&self) -> bool {
+        !matches!(self.stage, Stage::Idle)
+    }
+
+    /// True while ticks matter to it.
+    #[must_use]
+    pub const fn is_awake(&self) -> bool {
+        self.is_active() || self.trigger.is_awake()
+    }
+
+    /// What it came to.
+    #[must_use]
+    pub const fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// The configuration in force.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Begins from `last`, the last setpoint commanded. Gives the farthest that the axis goes on after a contact, d.
+    ///
+    /// # Errors
+    /// [`ProbeRefused`]; nothing moves then.
+    pub fn start(
+        &mut self,
+        order: &ProbeOrder,
+        last: &Setpoint,
+        travel: Option<TravelLimits>,
+    ) -> Result<Position, ProbeRefused> {
+        let bound = self.check(order, last.position, travel)?;
+        self.order = *order;
+        self.direction = if order.target > last.position { 1 } else { -1 };
+        self.follower.take_over(last);
+        self.history.clear();
+        (self.edge, self.touch, self.is_unplaced) = (None, None, false);
+        self.stage = Stage::Approach;
+        Ok(bound)
+    }
+
+    fn check(
+        &self,
+        order: &ProbeOrder,
+        from: Position,
+        travel: Option<TravelLimits>,
+    ) -> Result<Position, ProbeRefused> {
+        let way = order.target.saturating_sub(from);
+        if way.saturating_abs() < 1 {
+            return Err(ProbeRefused::NoWay);
+        }
+        if order.feed <= 0 || order.feed > self.config.fastest || order.retract < 0 {
+            return Err(ProbeRefused::FeedOutOfRange);
+        }
+        let bound = self.config.overtravel(order.feed);
+        let whole = |way: Position| way.saturating_ceil().saturating_to_num();
+        if bound > self.config.max_overtravel {
+            return Err(ProbeRefused::Overtravel {
+                bound: whole(bound),
+                allowed: whole(self.config.max_overtravel),
+            });
+        }
+        let (farthest, back) = if way > 0 {
+            (
+                order.target.saturating_add(bound),
+                from.saturating_sub(order.retract),
+            )
+        } else {
+            (
+                order.target.saturating_sub(bound),
+                from.saturating_add(order.retract),
+            )
+        };
+        let is_within = |travel: TravelLimits| travel.contains(farthest) && travel.contains(back);
+        match travel {
+            Some(travel) if !is_within(travel) => Err(ProbeRefused::BeyondTravel),
+            _ => Ok(bound),
+        }
+    }
+
+    /// The axis may not go on: ends as it is.
+    #[cold]
+    pub fn interrupt(&mut self, encoder_lost: bool) {
+        if self.is_active() {
+            let end = match self.stage {
+                Stage::Halt => self.end,
+                _ if encoder_lost => ProbeEnd::EncoderLost,
+                _ => ProbeEnd::Interrupted,
+            };
+            self.finish(end);
+        }
+        self.edge = None;
+    }
+
+    /// The setpoint of a tick while probing is active.
+    pub fn step(&mut self, sight: &Sight<'_>) -> Setpoint {
+        let observation = sight.observation;
+        let was_closed = self.trigger.is_closed();
+        let edge = self.trigger.step(self.config.debounce, observation);
+        self.report.glitches = self.trigger.glitches();
+        self.gather(sight);
+        match self.stage {
+            Stage::Idle => {}
+            Stage::Approach => self.approach(edge, was_closed, sight),
+            Stage::Stop => self.stop(sight),
+            Stage::Retract => self.retract(edge),
+            Stage::Brake => self.brake(edge, observation),
+            Stage::Halt => {
+                self.measure(sight);
+                if self.follower.is_at_rest() {
+                    self.finish(self.end);
+                }
+            }
+        }
+        self.follower.step(self.target())
+    }
+
+    /// Takes notice of a tick in which something else than probing moves the axis, or nothing; true if it is to stop.
+    #[cold]
+    pub fn watch(&mut self, sight: &Sight<'_>, is_moving: bool) -> bool {
+        let touched = self.trigger.step(self.config.debounce, sight.observation);
+        self.report.glitches = self.trigger.glitches();
+        if touched.is_none() {
+            let pending = self.trigger.pending();
+            // As the axis moved when it came.
+            self.touch = pending.map(|edge| {
+                self.touch
+                    .unwrap_or_else(|| by_count(&edge, sight, &self.config))
+            });
+            return false;
+        }
+        self.note_touch();
+        let stops = is_moving && self.config.stops_others;
+        if !stops {
+            self.conclude(ProbeEnd::Unasked);
+        }
+        stops
+    }
+
+    /// Stops what moved the axis, from its last setpoint, after a touch that nobody sought.
+    pub fn halt(&mut self, last: &Setpoint) {
+        self.direction = if last.velocity < 0 { -1 } else { 1 };
+        self.follower.take_over(last);
+        self.edge = None;
+        self.end = ProbeEnd::Unasked;
+        self.stage = Stage::Halt;
+    }
+
+    /// The raw place of a touch that has yet to be told where it is for users.
+    #[must_use]
+    pub fn unplaced(&self) -> Option<Position> {
+        let touch = self.report.touch.filter(|_| self.is_unplaced);
+        touch.map(|touch| touch.raw)
+    }
+
+    /// Tells where that touch is for users.
+    pub fn place(&mut self, position: Position) {
+        self.is_unplaced = false;
+        if let Some(touch) = &mut self.touch {
+            touch.position = position;
+        }
+        if let Some(touch) = &mut self.report.touch {
+            touch.position = position;
+        }
+    }
+
+    /// Where the stage wants to go.
+    const fn target(&self) -> Velocity {
+        let (speed, ahead) = match self.stage {
+            Stage::Approach => (self.order.feed, true),
+            Stage::Retract => (self.config.retract, false),
+            Stage::Idle | Stage::Stop | Stage::Brake | Stage::Halt => return Velocity::ZERO,
+        };
+        let bits = speed.to_bits();
+        if (self.direction > 0) == ahead {
+            Velocity::from_bits(bits)
+        } else {
+            Velocity::from_bits(bits.wrapping_neg())
+        }
+    }
+
+    /// Notes where the shaft was, as long as that may tell where a touch was.
+    fn gather(&mut self, sight: &Sight<'_>) {
+        let is_open = match (self.stage, &self.edge) {
+            (Stage::Approach, None) => true,
+            (Stage::Approach | Stage::Stop, Some(noted)) => noted.instant.is_some_and(|instant| {
+                let since = self.history.now().wrapping_sub(instant);
+                since < self.config.sample.saturating_mul(SAMPLES_AFTER)
+            }),
+            _ => false,
+        };
+        if is_open {
+            let elapsed = sight.edges.elapsed(sight.observation);
+            let sample = sight.edges.sample(sight.observation);
+            self.history.note(elapsed, sample, self.config.sample);
+        }
+    }
+
+    fn approach(&mut self, edge: Option<Edge>, was_closed: bool, sight: &Sight<'_>) {
+        self.note_edge(sight);
+        let stands = self.follower.is_at_rest();
+        if was_closed || stands && sight.observation.is_touching() {
+            self.trigger.close();
+            return self.end_with(ProbeEnd::AlreadyTouching);
+        }
+        if edge.is_some() {
+            self.settling = self.config.settle;
+            self.stage = Stage::Stop;
+        } else if self.has_arrived(self.order.target, self.direction) {
+            self.end_with(ProbeEnd::NoTouch);
+        }
+    }
+
+    /// Keeps the edge that may become a touch, and lets it go if it was a glitch.
+    fn note_edge(&mut self, sight: &Sight<'_>) {
+        let Some(edge) = self.trigger.pending() else {
+            if !self.trigger.is_closed() {
+                self.edge = None;
+            }
+            return;
+        };
+        if self.edge.is_some_and(|noted| noted.edge == edge) {
+            return;
+        }
+        let clocks = sight.observation.sampled_at.wrapping_sub(edge.latch.time);
+        let age = u32::try_from(clocks)
+            .ok()
+            .and_then(|clocks| sight.edges.ticks_of(clocks, TIME_FRAC));
+        self.edge = Some(Noted {
+            edge,
+            tick: sight.tick,
+            instant: age.map(|age| self.history.now().wrapping_sub(age)),
+        });
+    }
+
+    fn stop(&mut self, sight: &Sight<'_>) {
+        if let Some(noted) = self.edge.take() {
+            self.find(&noted, sight);
+        }
+        self.measure(sight);
+        if !self.follower.is_at_rest() {
+            return;
+        }
+        self.settling = self.settling.saturating_sub(1);
+        if self.settling != 0 {
+            return;
+        }
+        if self.order.retract > 0 {
+            let way = self.direction.wrapping_mul(self.order.retract.to_bits());
+            let from = self.follower.now().position;
+            self.back = Position::from_bits(from.to_bits().wrapping_sub(way));
+            self.stage = Stage::Retract;
+        } else {
+            self.finish(ProbeEnd::Touched);
+        }
+    }
+
+    fn retract(&mut self, edge: Option<Edge>) {
+        if edge.is_some() {
+            self.end_with(ProbeEnd::TouchedOnRetract);
+        } else if self.has_arrived(self.back, self.direction.wrapping_neg()) {
+            self.stage = Stage::Brake;
+        }
+    }
+
+    fn brake(&mut self, edge: Option<Edge>, observation: &Observation<'_>) {
+        if edge.is_some() {
+            self.end_with(ProbeEnd::TouchedOnRetract);
+        } else if self.follower.is_at_rest() {
+            self.finish(if observation.is_touching() {
+                ProbeEnd::StillTouching
+            } else {
+                ProbeEnd::Touched
+            });
+        }
+    }
+
+    /// True if a stop that begins now ends at `place` or beyond it in `direction`.
+    fn has_arrived(&self, place: Position, direction: i64) -> bool {
+        let now = self.follower.now();
+        let end = now
+            .position
+            .saturating_add(self.follower.stopping_distance(&now));
+        let left = place.saturating_sub(end).to_bits();
+        left.wrapping_mul(direction) <= 0
+    }
+
+    /// Where the touch was.
+    fn find(&mut self, noted: &Noted, sight: &Sight<'_>) {
+        let touch = self.by_edges(noted, sight);
+        self.touch = Some(touch.unwrap_or_else(|| Touch {
+            tick: noted.tick,
+            ..by_count(&noted.edge, sight, &self.config)
+        }));
+        self.note_touch();
+    }
+
+    /// By the samples about it; none where there are too few, or where they contradict what the hardware counted.
+    fn by_edges(&self, noted: &Noted, sight: &Sight<'_>) -> Option<Touch> {
+        let Noted {
+            edge,
+            tick,
+            instant,
+        } = *noted;
+        if !edge.is_latched {
+            return None;
+        }
+        let Config {
+            delay,
+            sample,
+            slope_reach,
+            ..
+        } = self.config;
+        let instant = instant?.wrapping_sub(delay.cast_unsigned());
+        let counted = middle_of(edge.latch.count);
+        let noise = sight.edges.noise();
+        let found = fit::at(&self.history, instant, sample, counted, noise)?;
+        let delayed = way_in(found.velocity, delay);
+        let off = found
+            .place
+            .saturating_add(delayed)
+            .saturating_sub(counted)
+            .saturating_abs();
+        if off > MOST_OFF {
+            return None;
+        }
+        let variance = found
+            .variance
+            .saturating_add(noise.of_place(slope_reach))
+            .saturating_add(self.config.jitter_variance(found.velocity));
+        Some(Touch {
+            raw: found.place,
+            position: found.place,
+            variance: Variance::from_bits(variance),
+            velocity: found.velocity,
+            time: edge.latch.time,
+            tick,
+            overtravel: Position::ZERO,
+            edges: found.edges,
+        })
+    }
+
+    /// Follows how far the axis goes on after the contact.
+    fn measure(&mut self, sight: &Sight<'_>) {
+        if let Some(touch) = &mut self.touch {
+            let gone = sight
+                .observation
+                .position()
+                .saturating_sub(touch.raw)
+                .to_bits();
+            let gone = Position::from_bits(gone.wrapping_mul(self.direction));
+            touch.overtravel = touch.overtravel.max(gone);
+        }
+    }
+
+    fn note_touch(&mut self) {
+        self.report.touches = self.report.touches.wrapping_add(1);
+        self.report.touch = self.touch;
+        self.is_unplaced = true;
+    }
+
+    fn end_with(&mut self, end: ProbeEnd) {
+        self.end = end;
+        self.stage = Stage::Halt;
+    }
+
+    fn finish(&mut self, end: ProbeEnd) {
+        self.stage = Stage::Idle;
+        self.conclude(end);
+    }
+
+    fn conclude(&mut self, end: ProbeEnd) {
+        self.report.ends = self.report.ends.wrapping_add(1);
+        self.report.end = Some(end);
+        self.report.touch = self.touch.take();
+        self.edge = None;
+    }
+}
+
+/// So many samples after the contact tell enough of it.
+const SAMPLES_AFTER: u32 = 8;
+/// A place by the edges lies no farther from what the hardware counted than the encoder's own errors, d.
+const MOST_OFF: Position = Position::from_bits(12 << Position::FRAC_NBITS);
+
+/// The middle of a discrete.
+const fn middle_of(count: i64) -> Position {
+    Position::from_bits(
+        count
+            .wrapping_shl(Position::FRAC_NBITS)
+            .wrapping_add(1 << (Position::FRAC_NBITS - 1)),
+    )
+}
+
+/// Way at `velocity` in a time with [`TIME_FRAC`].
+fn way_in(velocity: Velocity, time: i32) -> Position {
+    let way = i64::from(velocity.to_bits()).wrapping_mul(i64::from(time));
+    Position::from_bits(way.wrapping_shr(Velocity::FRAC_NBITS + TIME_FRAC - Position::FRAC_NBITS))
+}
+
+/// A touch by what the hardware counted and what is estimated of the velocity.
+fn by_count(edge: &Edge, sight: &Sight<'_>, config: &Config) -> Touch {
+    let velocity = sight.estimate.velocity;
+    let raw = middle_of(edge.latch.count).saturating_sub(way_in(velocity, config.delay));
+    // Within a count, and within a tick where nothing latched: a twelfth of each squared.
+    const OF_COUNT: u64 = (1 << 48) / 12;
+    let of_tick = if edge.is_latched {
+        0
+    } else {
+        let speed = u64::from(velocity.to_bits().unsigned_abs());
+        speed.wrapping_mul(speed).wrapping_shr(3)
+    };
+    // v²/12 in 2⁻⁴⁸ is 2⁸/12 of its bits, and 2⁸/12 is 171/8.
+    let of_tick = of_tick.saturating_mul(171);
+    let variance = OF_COUNT
+        .saturating_add(of_tick)
+        .saturating_add(config.jitter_variance(velocity));
+    Touch {
+        raw,
+        position: raw,
+        variance: Variance::from_bits(variance),
+        velocity,
+        time: edge.latch.time,
+        tick: sight.tick,
+        overtravel: Position::ZERO,
+        edges: 0,
+    }
+}

@@ -1,0 +1,5 @@
+//! Probing: on the simulated machine and on captures made up.
+
+mod any;
+mod figures;
+mod moments;
