@@ -7,6 +7,7 @@ mod calibrate_axis;
 mod calibrate_encoder;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
+mod correct;
 mod demo;
 mod deviations;
 mod help;

@@ -106,7 +106,7 @@ fn numbers(arguments: &str) -> Vec<f64> {
 
 fn motions(canon: &str, start: Coordinates) -> Vec<Motion> {
     let mut all = Vec::new();
-    let mut origin = Coordinates::ZERO;
+    let (mut origin, mut shift) = (Coordinates::ZERO, Coordinates::ZERO);
     let mut tool_offset = Coordinates::ZERO;
     let (mut tool, mut selected) = (None, None);
     let mut plane = Plane::Xy;
@@ -122,6 +122,10 @@ fn motions(canon: &str, start: Coordinates) -> Vec<Motion> {
         let (is_feed, end, shape) = match call {
             "SET_G5X_OFFSET" => {
                 origin = Coordinates::xyz(n[1], n[2], n[3]);
+                continue;
+            }
+            "SET_G92_OFFSET" => {
+                shift = Coordinates::xyz(n[0], n[1], n[2]);
                 continue;
             }
             "USE_TOOL_LENGTH_OFFSET" => {
@@ -156,13 +160,13 @@ fn motions(canon: &str, start: Coordinates) -> Vec<Motion> {
             }
             _ => continue,
         };
-        let to = end + origin + tool_offset;
+        let to = end + origin + shift + tool_offset;
         let start = from;
         let shape = match shape {
             None => Shape::Line,
             Some((centre, turns)) => {
-                let shift = plane.of(&(origin + tool_offset));
-                let centre = [centre[0] + shift[0], centre[1] + shift[1]];
+                let moved = plane.of(&(origin + shift + tool_offset));
+                let centre = [centre[0] + moved[0], centre[1] + moved[1]];
                 let angle = |place: &Coordinates| {
                     let [x, y] = plane.of(place);
                     (y - centre[1]).atan2(x - centre[0])
