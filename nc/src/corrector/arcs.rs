@@ -2,6 +2,7 @@
 
 use super::Task;
 use super::instruction::{Found, Said, count, parameter};
+use super::known::Known;
 use super::places::Goals;
 use super::refusal::{Reason, Within};
 use super::straight::Leg;
@@ -9,7 +10,7 @@ use super::write::{Scale, default_style};
 use crate::coordinates::{Axis, AxisSet, Coordinates};
 use crate::path::PathError;
 use crate::path::arc::{Arc, Piece, corrected};
-use crate::terms::Shape;
+use crate::terms::{Circumstances, Shape};
 
 /// A circle that a leg goes along, corrected.
 #[derive(Clone, Copy, Debug)]
@@ -47,22 +48,43 @@ impl Task<'_> {
         let (from, to) = self.ends(&goals)?;
         let arc = self.programmed_arc(&goals, from, to, form, clockwise)?;
         let with = self.standing_circumstances();
-        let started = self.started_with(&from)?;
-        let pieces = corrected(
-            &arc,
-            &started,
-            &self.known.terms,
-            &with,
-            &self.known.tolerance,
-        );
-        let pieces = pieces.map_err(|error| (self.at(), Reason::Path(error)))?;
-        self.check_pieces(pieces.len(), within)?;
-        let legs: Vec<Leg> = pieces.into_iter().map(leg).collect();
-        let after = crate::terms::Circumstances {
+        let legs = self.legs_of(&arc, &from, &with)?;
+        self.check_pieces(legs.len(), within)?;
+        let after = Circumstances {
             approach: arc.approach_after(with.approach),
             ..with
         };
         self.lead(&goals, &from, &legs, &after)
+    }
+
+    /// The arc in pieces. Where it begins so far from its circle that no piece is an arc, a line leads to it.
+    fn legs_of(
+        &self,
+        arc: &Arc,
+        from: &Coordinates,
+        with: &Circumstances,
+    ) -> Result<Vec<Leg>, Found> {
+        let Known {
+            terms, tolerance, ..
+        } = &*self.known;
+        let started = self.started_with(from)?;
+        let found = |error| (self.at(), Reason::Path(error));
+        match corrected(arc, &started, terms, with, tolerance) {
+            Ok(pieces) => Ok(pieces.into_iter().map(leg).collect()),
+            Err(PathError::NotAnArc) => {
+                let k = self.correction(from, with, self.at())?;
+                let pieces = corrected(arc, &k, terms, with, tolerance).map_err(found)?;
+                let lead = Leg {
+                    to: *from,
+                    k,
+                    circle: None,
+                };
+                Ok(std::iter::once(lead)
+                    .chain(pieces.into_iter().map(leg))
+                    .collect())
+            }
+            Err(error) => Err(found(error)),
+        }
     }
 
     fn form(&self) -> Result<Form, Found> {

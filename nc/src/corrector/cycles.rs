@@ -344,30 +344,32 @@ impl Task<'_> {
         if cycle.end == CycleEnd::Height {
             return;
         }
+        let to_retract = self.now.modes.return_to_retract;
         let state = &mut self.now.axes[Axis::Z.index()];
-        let to_retract = match (state.program, retract) {
-            (Some(from), Some(retract)) => self.now.modes.return_to_retract || from < retract,
-            _ => self.now.modes.return_to_retract,
-        };
         if self.now.modes.incremental {
             // R is a way from where the control stands: what it has more stays.
-            if to_retract && let (Some(from), Some(to)) = (state.program, retract) {
+            if let (Some(from), Some(to)) = (state.program, retract)
+                && (to_retract || from < to)
+            {
                 state.by(to - from);
             }
-        } else if to_retract {
-            match retract {
-                Some(retract) => {
-                    state.at_program(retract);
-                    state.applied = state.bias();
-                }
-                None => {
-                    state.program = None;
-                    state.machine = None;
-                }
-            }
-        } else if state.program.is_none() {
-            // It went back to where it was, or to R: unknown either way.
-            state.machine = None;
+            return;
         }
+        let (Some(retract), true) = (retract, to_retract || state.program.is_some()) else {
+            // It went back to where it was, or to R: unknown either way.
+            state.program = None;
+            state.machine = None;
+            return;
+        };
+        // What the program means, and what the control does, which stands elsewhere and reads R as it is written.
+        let from = state
+            .program
+            .filter(|_| !to_retract)
+            .unwrap_or(f64::NEG_INFINITY);
+        let bias = state.bias();
+        let stands = (from + state.applied - bias).max(retract);
+        let meant = from.max(retract);
+        state.at_program(meant);
+        state.applied = stands + bias - meant;
     }
 }

@@ -219,6 +219,8 @@ impl Task<'_> {
                 0.0,
             );
             if stays && !(leg.circle.is_some() && plane.contains(axis)) {
+                // It stands while its goal goes on by less than a step.
+                self.now.axes[axis.index()].applied -= goal.way;
                 continue;
             }
             if let Some(wanted) = self.wanted(axis, goal, leg.k[axis], force.contains(axis))? {

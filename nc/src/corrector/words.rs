@@ -33,7 +33,8 @@ impl Task<'_> {
         let state = &self.now.axes[axis.index()];
         let scale = self.scale(axis);
         if goal.word.is_none() && !force {
-            let stays = !self.known.corrects.contains(axis) || scale.says(state.applied, k);
+            // Pieces of a movement may have left a remainder on any axis.
+            let stays = scale.says(state.applied, k);
             // A program that has not placed an axis yet has no target there.
             if stays || !state.placed {
                 return Ok(None);
