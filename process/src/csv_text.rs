@@ -77,6 +77,12 @@ impl<'t> CsvText<'t> {
         self.columns.iter().any(|known| known == column)
     }
 
+    /// What is wrong with the header as a whole.
+    pub fn complain_of_header(&self, message: impl Into<String>) -> Complaint {
+        let at = self.text.len() - skipped(self.text).len();
+        Complaint::at(self.text, &(at..at), message)
+    }
+
     /// Its records.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
         self.records
@@ -109,6 +115,21 @@ impl Row<'_> {
         Err(self.complain(column, message))
     }
 
+    /// The finite number of a field, none where it is empty or not there.
+    ///
+    /// # Errors
+    /// Something else.
+    pub fn optional_number(&self, column: &str) -> Result<Option<f64>, Complaint> {
+        let text = self.text(column);
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let finite = text.parse().ok().filter(|number: &f64| number.is_finite());
+        finite
+            .map(Some)
+            .ok_or_else(|| self.complain(column, format!("`{text}`: expected a number")))
+    }
+
     /// What is wrong with a field.
     pub fn complain(&self, column: &str, message: impl Into<String>) -> Complaint {
         let at = field(self.csv.text, self.record, self.index(column).unwrap_or(0));
@@ -130,12 +151,27 @@ fn field(text: &str, record: &StringRecord, index: usize) -> Range<usize> {
     let begins = start + line.len() - skipped(line).len();
     let line = text.get(begins..).unwrap_or_default();
     let line = line.split('\n').next().unwrap_or_default();
-    let fields = line.split(',').scan(begins, |at, field| {
-        let begins = *at + field.len() - field.trim_start().len();
-        *at += field.len() + 1;
-        Some(begins..begins + field.trim().len())
-    });
-    fields.into_iter().nth(index).unwrap_or(begins..begins)
+    let span = spans(line).into_iter().nth(index).unwrap_or(0..0);
+    begins + span.start..begins + span.end
+}
+
+/// Where the fields of a line stand, without blanks around them: a comma between quotes parts none.
+fn spans(line: &str) -> Vec<Range<usize>> {
+    let (mut from, mut is_quoted) = (0, false);
+    let mut spans = Vec::new();
+    for (at, byte) in line.bytes().chain([b',']).enumerate() {
+        match byte {
+            b'"' => is_quoted = !is_quoted,
+            b',' if !is_quoted || at == line.len() => {
+                let field = &line[from..at];
+                let start = from + field.len() - field.trim_start().len();
+                spans.push(start..start + field.trim().len());
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    spans
 }
 
 /// The text behind empty lines and comments.
@@ -156,5 +192,48 @@ fn complaint(error: &csv::Error) -> Complaint {
     Complaint {
         place: Place { line, column: 1 },
         message: error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<CsvText<'_>, Complaint> {
+        CsvText::read(text, &["name"], &["x", "y"])
+    }
+
+    #[test]
+    fn fields_keep_their_places() {
+        let text = "# a table\nname, x,y\n\n\"a, b\", 1.5 ,\nc,zwei,3\n";
+        let table = read(text).unwrap();
+        let [first, second] = table.rows().collect::<Vec<_>>()[..] else {
+            panic!("two rows");
+        };
+        assert_eq!(first.text("name"), "a, b");
+        assert_eq!(first.optional_number("x").unwrap(), Some(1.5));
+        assert_eq!(first.optional_number("y").unwrap(), None);
+        let error = second.optional_number("x").unwrap_err();
+        assert_eq!(error.to_string(), "5:3: `zwei`: expected a number");
+        assert_eq!(first.complain("x", "here").to_string(), "4:9: here");
+        assert_eq!(table.complain_of_header("no").to_string(), "2:1: no");
+    }
+
+    #[test]
+    fn what_is_no_table_is_refused() {
+        let message = |text| read(text).map(|_| ()).unwrap_err().to_string();
+        assert_eq!(
+            message(""),
+            "1:1: there is no column \"name\": the header is to be name"
+        );
+        assert_eq!(
+            message("name,z"),
+            "1:6: column \"z\" is not known: expected name, x, y"
+        );
+        assert_eq!(message("name,x,x"), "1:8: column \"x\" is there twice");
+        assert_eq!(
+            message("name,x\na,1,2\n"),
+            "2:1: 3 fields, and the header has 2 columns"
+        );
     }
 }

@@ -5,7 +5,6 @@
 #![forbid(unsafe_code)]
 
 pub mod axis_calibration;
-pub mod csv_table;
 mod csv_text;
 pub mod deviations;
 pub mod metrology;

@@ -12,12 +12,11 @@
 use leadscrew_nc::source::Complaint;
 
 use super::{Feature, Part, Planned, Touches, normal_of_approach};
-use crate::csv_table::{Cell, CsvTable};
+use crate::csv_text::{CsvText, Row};
 use crate::metrology::touch::{Axis, Touch};
 
-const COLUMNS: [&str; 11] = [
-    "feature",
-    "point",
+const NEEDED: [&str; 2] = ["feature", "point"];
+const OPTIONAL: [&str; 9] = [
     "x_mm",
     "y_mm",
     "z_mm",
@@ -34,23 +33,21 @@ const COLUMNS: [&str; 11] = [
 /// # Errors
 /// Where and what is wrong: an unknown feature, a touch twice or not at all, a number that is none.
 pub fn read(text: &str, part: &Part) -> Result<Touches, Complaint> {
-    let table = CsvTable::read(text, &COLUMNS)?;
+    let table = CsvText::read(text, &NEEDED, &OPTIONAL)?;
     let reader = Reader {
-        feature: table.needed("feature")?,
-        point: table.needed("point")?,
         table: &table,
         part,
     };
     reader.check_columns()?;
     let mut touches: Touches = vec![Vec::new(); part.features.len()];
     for row in table.rows() {
-        let (feature, point, touch) = reader.touch(row)?;
+        let (feature, point, touch) = reader.touch(&row)?;
         if touches[feature].iter().any(|(other, _)| *other == point) {
             let message = format!(
                 "point {point} of {} is there twice",
                 part.features[feature].name
             );
-            return Err(table.complain(&row[reader.point], message));
+            return Err(row.complain("point", message));
         }
         touches[feature].push((point, touch));
     }
@@ -59,96 +56,82 @@ pub fn read(text: &str, part: &Part) -> Result<Touches, Complaint> {
 }
 
 struct Reader<'a> {
-    table: &'a CsvTable<'a>,
+    table: &'a CsvText<'a>,
     part: &'a Part,
-    feature: usize,
-    point: usize,
 }
 
 impl Reader<'_> {
     fn check_columns(&self) -> Result<(), Complaint> {
-        let has = |name| self.table.column(name).is_some();
+        let has = |name| self.table.has(name);
+        let missing = |message: String| Err(self.table.complain_of_header(message));
         if has("deviation_mm") == has("measured_x_mm") {
-            let missing = if has("deviation_mm") {
+            let which = if has("deviation_mm") {
                 "one of the two only"
             } else {
                 "one of the two"
             };
-            let message =
-                format!("expected `deviation_mm`, or `measured_x_mm` with y and z: {missing}");
-            // The head of the table.
-            return Err(Complaint {
-                place: leadscrew_nc::source::Place { line: 1, column: 1 },
-                message,
-            });
+            return missing(format!(
+                "expected `deviation_mm`, or `measured_x_mm` with y and z: {which}"
+            ));
         }
-        if has("measured_x_mm") {
-            self.table.needed("measured_y_mm")?;
-            self.table.needed("measured_z_mm")?;
+        for name in ["measured_y_mm", "measured_z_mm"] {
+            if has("measured_x_mm") && !has(name) {
+                return missing(format!(
+                    "there is no column \"{name}\" beside `measured_x_mm`"
+                ));
+            }
         }
         Ok(())
     }
 
-    fn touch(&self, row: &[Cell]) -> Result<(usize, String, Touch), Complaint> {
-        let index = self.feature_of(&row[self.feature])?;
+    fn touch(&self, row: &Row<'_>) -> Result<(usize, String, Touch), Complaint> {
+        let index = self.feature_of(row)?;
         let feature = &self.part.features[index];
-        let point = row[self.point].content.clone();
+        let point = row.text("point").to_owned();
         let planned = self.planned(row, feature, &point)?;
         let measured = self.measured(row, &planned)?;
         let mut touch = Touch::at(planned.nominal, planned.normal, measured);
-        let own = match self.table.column("sigma_mm") {
-            Some(column) => self.table.number(&row[column])?,
-            None => None,
-        };
-        if own.is_some_and(|sigma| sigma <= 0.0)
-            && let Some(column) = self.table.column("sigma_mm")
-        {
-            return Err(self
-                .table
-                .complain(&row[column], "expected a 1σ above 0 mm, or nothing"));
+        let own = row.optional_number("sigma_mm")?;
+        if own.is_some_and(|sigma| sigma <= 0.0) {
+            return Err(row.complain("sigma_mm", "expected a 1σ above 0 mm, or nothing"));
         }
         touch.sigma_mm = own.or(self.part.probe.sigma_mm);
         Ok((index, point, touch))
     }
 
-    fn feature_of(&self, cell: &Cell) -> Result<usize, Complaint> {
+    fn feature_of(&self, row: &Row<'_>) -> Result<usize, Complaint> {
         let touched = || {
             let features = self.part.features.iter().enumerate();
             features.filter(|(_, feature)| feature.is_touched())
         };
-        let found = touched().find(|(_, feature)| feature.name == cell.content);
+        let found = touched().find(|(_, feature)| feature.name == row.text("feature"));
         found.map(|(index, _)| index).ok_or_else(|| {
             let known: Vec<&str> = touched()
                 .map(|(_, feature)| feature.name.as_str())
                 .collect();
             let message = format!(
                 "`{}`: the part has no such feature to touch; it has {}",
-                cell.content,
+                row.text("feature"),
                 known.join(", ")
             );
-            self.table.complain(cell, message)
+            row.complain("feature", message)
         })
     }
 
     /// The planned touch by the part's file, over which the row goes.
-    fn planned(&self, row: &[Cell], feature: &Feature, point: &str) -> Result<Planned, Complaint> {
+    fn planned(&self, row: &Row<'_>, feature: &Feature, point: &str) -> Result<Planned, Complaint> {
         let known = feature
             .planned
             .iter()
             .find(|planned| planned.point == point);
         let place = self.places(row, ["x_mm", "y_mm", "z_mm"])?;
-        let approach = match self.table.column("approach") {
-            Some(column) if !row[column].content.is_empty() => {
-                let normal = normal_of_approach(&row[column].content);
-                Some(normal.ok_or_else(|| {
-                    let message = format!(
-                        "`{}`: expected a direction such as -z, or three numbers",
-                        row[column].content
-                    );
-                    self.table.complain(&row[column], message)
-                })?)
-            }
-            _ => None,
+        let approach = match row.text("approach") {
+            "" => None,
+            direction => Some(normal_of_approach(direction).ok_or_else(|| {
+                let message =
+                    format!("`{direction}`: expected a direction such as -z, or three numbers");
+                row.complain("approach", message)
+            })?),
         };
         let nominal = place.or(known.map(|known| known.nominal));
         let normal = approach.or(known.map(|known| known.normal));
@@ -162,7 +145,7 @@ impl Reader<'_> {
                 "point {point} of {} is not in the part's file: expected {lacks} here",
                 feature.name
             );
-            return Err(self.table.complain(&row[self.point], message));
+            return Err(row.complain("point", message));
         };
         Ok(Planned {
             point: point.to_owned(),
@@ -171,26 +154,24 @@ impl Reader<'_> {
         })
     }
 
-    fn measured(&self, row: &[Cell], planned: &Planned) -> Result<[f64; 3], Complaint> {
-        let Some(column) = self.table.column("deviation_mm") else {
+    fn measured(&self, row: &Row<'_>, planned: &Planned) -> Result<[f64; 3], Complaint> {
+        if !self.table.has("deviation_mm") {
             let names = ["measured_x_mm", "measured_y_mm", "measured_z_mm"];
-            let measured = self.places(row, names)?.ok_or_else(|| {
-                self.table
-                    .complain(&row[self.point], "the place measured is missing")
-            })?;
+            let measured = self
+                .places(row, names)?
+                .ok_or_else(|| row.complain("point", "the place measured is missing"))?;
             return Ok(if self.part.table.is_of_stylus {
                 self.part.probe.surface(measured, planned.normal)
             } else {
                 measured
             });
-        };
-        let cell = &row[column];
-        let deviation = self.table.number(cell)?;
+        }
+        let deviation = row.optional_number("deviation_mm")?;
         let deviation =
-            deviation.ok_or_else(|| self.table.complain(cell, "the deviation is missing"))?;
+            deviation.ok_or_else(|| row.complain("deviation_mm", "the deviation is missing"))?;
         let Some(axis) = Axis::along(planned.normal) else {
             let message = "the approach is oblique, so that a deviation of one coordinate does not tell the place: give measured_x_mm, measured_y_mm, measured_z_mm";
-            return Err(self.table.complain(cell, message));
+            return Err(row.complain("deviation_mm", message));
         };
         let mut measured = planned.nominal;
         measured[axis.index()] += self.true_length(axis, deviation);
@@ -198,19 +179,17 @@ impl Reader<'_> {
     }
 
     /// Three cells, or none of them.
-    fn places(&self, row: &[Cell], names: [&str; 3]) -> Result<Option<[f64; 3]>, Complaint> {
+    fn places(&self, row: &Row<'_>, names: [&str; 3]) -> Result<Option<[f64; 3]>, Complaint> {
         let mut place = [None; 3];
         for axis in Axis::ALL {
-            if let Some(column) = self.table.column(names[axis.index()]) {
-                let number = self.table.number(&row[column])?;
-                place[axis.index()] = number.map(|number| self.true_length(axis, number));
-            }
+            let number = row.optional_number(names[axis.index()])?;
+            place[axis.index()] = number.map(|number| self.true_length(axis, number));
         }
         match place {
             [Some(x), Some(y), Some(z)] => Ok(Some([x, y, z])),
             [None, None, None] => Ok(None),
-            _ => Err(self.table.complain(
-                &row[self.point],
+            _ => Err(row.complain(
+                "point",
                 format!("expected all of {} or none", names.join(", ")),
             )),
         }
