@@ -155,7 +155,9 @@ fn rs274(program: &str) -> Option<Vec<Canon>> {
     }
     let parameters = file("rs274.var", &parameters);
     let program = file("program.ngc", program);
+    // It keeps the tool table in a file at home, which others that run at the same time would share.
     let output = Command::new("/usr/bin/rs274")
+        .env("HOME", folder.path())
         .current_dir(folder.path())
         .args(["-g", "-t"])
         .arg(&tools)

@@ -54,7 +54,9 @@ impl Control {
         std::fs::write(file("program.ngc"), program).unwrap();
         std::fs::write(file("tool.tbl"), self.tools).unwrap();
         std::fs::write(file("control.var"), self.variables()).unwrap();
+        // It keeps the tool table in a file at home, which others that run at the same time would share.
         let output = Command::new(RS274)
+            .env("HOME", folder.path())
             .arg("-g")
             .arg("-t")
             .arg(file("tool.tbl"))
