@@ -9,6 +9,8 @@ use leadscrew_nc::path::arc::Plane;
 
 const RS274: &str = "/usr/bin/rs274";
 
+const ATTEMPTS: usize = 6;
+
 pub fn is_installed() -> bool {
     Path::new(RS274).exists()
 }
@@ -54,24 +56,26 @@ impl Control {
         std::fs::write(file("program.ngc"), program).unwrap();
         std::fs::write(file("tool.tbl"), self.tools).unwrap();
         std::fs::write(file("control.var"), self.variables()).unwrap();
-        let output = Command::new(RS274)
-            .arg("-g")
-            .arg("-t")
-            .arg(file("tool.tbl"))
-            .arg("-v")
-            .arg(file("control.var"))
-            .arg(file("program.ngc"))
-            .arg(file("out.txt"))
-            .output()
-            .unwrap();
-        let canon = std::fs::read_to_string(file("out.txt")).unwrap_or_default();
-        assert!(
-            canon.contains("PROGRAM_END"),
-            "{}{canon}\n{}",
-            String::from_utf8_lossy(&output.stderr),
-            String::from_utf8_lossy(program)
-        );
-        motions(&canon, self.start)
+        let mut said = String::new();
+        // Interpreters that run at the same time share a file of tools, and now and then one gives up for it.
+        for _ in 0..ATTEMPTS {
+            let output = Command::new(RS274)
+                .arg("-g")
+                .arg("-t")
+                .arg(file("tool.tbl"))
+                .arg("-v")
+                .arg(file("control.var"))
+                .arg(file("program.ngc"))
+                .arg(file("out.txt"))
+                .output()
+                .unwrap();
+            let canon = std::fs::read_to_string(file("out.txt")).unwrap_or_default();
+            if canon.contains("PROGRAM_END") {
+                return motions(&canon, self.start);
+            }
+            said = format!("{}{canon}", String::from_utf8_lossy(&output.stderr));
+        }
+        panic!("{said}\n{}", String::from_utf8_lossy(program));
     }
 
     fn variables(&self) -> String {
