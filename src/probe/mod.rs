@@ -448,14 +448,17 @@ impl Probe {
         }
     }
 
-    /// True if a stop that begins now ends at `place` or beyond it in `direction`.
+    /// True if a stop that begins now ends at `place` in `direction`, or would pass it if it began a tick later.
     fn has_arrived(&self, place: Position, direction: i64) -> bool {
         let now = self.follower.now();
         let end = now
             .position
             .saturating_add(self.follower.stopping_distance(&now));
-        let left = place.saturating_sub(end).to_bits();
-        left.wrapping_mul(direction) <= 0
+        let left = place.saturating_sub(end).to_bits().wrapping_mul(direction);
+        let tick = i64::from(now.velocity.to_bits())
+            .wrapping_abs()
+            .wrapping_shr(Velocity::FRAC_NBITS - Position::FRAC_NBITS);
+        left <= tick
     }
 
     /// Where the touch was.

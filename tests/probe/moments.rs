@@ -3,7 +3,7 @@
 use leadscrew::axis::{Axis, Inputs, Outputs};
 use leadscrew::estimator::EstimatorConfig;
 use leadscrew::hal::{Capture, Latch, Lines};
-use leadscrew::params::AxisParams;
+use leadscrew::params::{AxisParams, MotionParams};
 use leadscrew::probe::{ProbeEnd, ProbeOrder, ProbeParams, ProbeRefused, Stage};
 use leadscrew::setpoint::travel::TravelLimits;
 use leadscrew::supervisor::SupervisorParams;
@@ -31,6 +31,11 @@ pub fn params(probe: ProbeParams) -> AxisParams {
     AxisParams {
         probe,
         supervisor: SupervisorParams::widest(),
+        // Nor has it an index.
+        motion: MotionParams {
+            counts_per_revolution: 0.0,
+            ..MotionParams::default()
+        },
         ..AxisParams::new(estimator)
     }
 }
@@ -177,7 +182,8 @@ fn a_touch_is_found_between_the_edges_and_the_axis_goes_back() {
         );
         let way = if target > 0.0 { 1.0 } else { -1.0 };
         let back = place + way * (overtravel - 200.0) - follower.position;
-        assert!(back.abs() < 5.0, "{back}");
+        // To a tick of the way back, 8.3 d, and what its stop is not known by.
+        assert!(back.abs() < 12.0, "{back}");
         assert!(way * (place - start) > 500.0);
         assert!(touch.edges > 20);
     }

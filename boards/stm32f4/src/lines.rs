@@ -21,6 +21,12 @@ pub fn read() -> Lines {
     }
 }
 
+/// Level of the probe now: its edge is a latch's ([`latches`](crate::latches)).
+#[inline]
+pub fn is_probe_deflected() -> bool {
+    gpio::is_high(pins::PROBE)
+}
+
 /// Enable and brake as a tick wants them; the light is on while the drive is enabled.
 #[inline]
 pub fn put_out(outputs: &Outputs) {

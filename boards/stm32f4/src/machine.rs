@@ -24,6 +24,8 @@ pub struct Machine {
     /// When the newest index came.
     index_at: Option<u32>,
     probe: Option<Latch>,
+    /// The probe is deflected.
+    touching: bool,
     home: Option<Latch>,
     lines: Lines,
     references: References,
@@ -50,6 +52,7 @@ impl Machine {
             index: None,
             index_at: None,
             probe: None,
+            touching: lines::is_probe_deflected(),
             home: None,
             lines: lines::read(),
             references,
@@ -61,6 +64,7 @@ impl Machine {
     /// Takes in the tick of `sample`, `missed` ticks after the last one.
     pub fn sample(&mut self, sample: Sample, progress: Progress, missed: u16) {
         self.lines = lines::read();
+        self.touching = lines::is_probe_deflected();
         self.references.sample();
         self.taken = self.ring.take(sample, progress, |index| EDGES.word(index));
         self.missed = missed;
@@ -103,6 +107,7 @@ impl Inlet for Machine {
         let mut capture = self.taken.capture(self.edges());
         capture.index = self.index;
         capture.probe = self.probe;
+        capture.touching = self.touching;
         capture.home = self.home;
         Inputs {
             capture,

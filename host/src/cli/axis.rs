@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{BodeArgs, JsonArgs, NullOffsetArgs, ProbeArgs, RecordArgs, ScopeArgs, SetupArgs};
 use super::{
-    BodeArgs, JsonArgs, NullOffsetArgs, RecordArgs, ScopeArgs, ScrewTableCommand, SetupArgs,
+    BodeArgs, JsonArgs, NullOffsetArgs, ProbeArgs, RecordArgs, ScopeArgs, ScrewTableCommand,
+    SetupArgs,
 };
 
 /// What works on an axis.

@@ -85,7 +85,7 @@ pub enum CalibrateProbeCommand {
 }
 
 /// How a calibration is fitted and told.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Debug, Args)]
 pub struct FitArgs {
     /// Leave touches out that do not fit the others; they are named either way
     #[arg(long)]

@@ -5,6 +5,7 @@ mod autotune;
 mod axis;
 mod calibrate_axis;
 mod calibrate_encoder;
+mod calibrate_probe;
 #[path = "../support/capture_files.rs"]
 mod capture_files;
 mod correct;

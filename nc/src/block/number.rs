@@ -1,7 +1,6 @@
 //! Numbers as they are written, and others written like them.
 
 use std::fmt;
-use std::io::Write as _;
 
 /// How a number shows its sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -233,22 +232,27 @@ impl Number {
         } else if signed || self.sign == Sign::Plus {
             out.push(b'+');
         }
-        let power = 10_u64.pow(u32::from(decimals));
-        let (whole, part) = (magnitude / power, magnitude % power);
         // Leading zeros stay; without them a shorter number is a shorter word.
         let integer_digits = match self.integer_digits {
             digits if self.padded => usize::from(digits),
             digits => usize::from(digits.min(1)),
         };
-        if whole > 0 || integer_digits > 0 {
-            let _ = write!(out, "{whole:0integer_digits$}");
+        let decimals = usize::from(decimals);
+        let mut digits = [b'0'; 40];
+        let mut first = digits.len();
+        let mut rest = magnitude;
+        while rest > 0 {
+            first -= 1;
+            digits[first] = b'0' + (rest % 10) as u8;
+            rest /= 10;
         }
+        let first = first.min(digits.len() - decimals - integer_digits);
+        let (whole, part) = digits[first..].split_at(digits.len() - first - decimals);
+        out.extend_from_slice(whole);
         if self.point || decimals > 0 {
             out.push(b'.');
         }
-        if decimals > 0 {
-            let _ = write!(out, "{part:0width$}", width = usize::from(decimals));
-        }
+        out.extend_from_slice(part);
     }
 
     /// Digits that a whole number of steps needs, for fixed widths.

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::refusal::Lost;
 use super::state::{AxisStates, Modes, Offset, Part};
+use super::write::Scales;
 use super::{NOWHERE, Now, cycles};
 use crate::block::Number;
 use crate::coordinates::{AXES, Axis, AxisSet, Coordinates};
@@ -132,6 +133,7 @@ impl Known {
         }
         let mut now = Now {
             modes,
+            scales: Scales::new(&self.dialect, &modes),
             axes,
             approach: Approach::UNKNOWN,
             tool: state.tool,

@@ -26,7 +26,7 @@ use instruction::{Found, Instruction};
 use known::Known;
 use places::Goal;
 use state::{AxisState, AxisStates, Modes, Motion};
-use write::Edits;
+use write::{Edits, Scales};
 
 use crate::block::{Block, MAX_BLOCK, column};
 use crate::coordinates::{AXES, Coordinates};
@@ -52,6 +52,8 @@ pub struct Corrector {
 #[derive(Clone, Debug)]
 struct Now {
     modes: Modes,
+    /// How words count in these modes.
+    scales: Scales,
     axes: AxisStates,
     approach: Approach,
     /// Tool in use.

@@ -31,7 +31,7 @@ pub(super) type Goals = [Goal; AXES];
 impl Task<'_> {
     /// How the words of an axis count now.
     pub fn scale(&self, axis: Axis) -> Scale {
-        Scale::of(&self.known.dialect, &self.now.modes, axis)
+        *self.now.scales.of(axis)
     }
 
     /// What the words of the axes say.

@@ -50,6 +50,7 @@ impl Task<'_> {
                 self.set(*meaning, *word)?;
             }
         }
+        self.now.scales.follow(&self.known.dialect, &self.now.modes);
         for (code, word) in &self.said.settings {
             match code {
                 Code::WorkOffset(tenths) => self.take_work_offset(*tenths),

@@ -31,6 +31,9 @@ impl Task<'_> {
         force: bool,
     ) -> Result<Option<Wanted>, Found> {
         let state = &self.now.axes[axis.index()];
+        if goal.word.is_none() && !force && state.applied == k {
+            return Ok(None);
+        }
         let scale = self.scale(axis);
         if goal.word.is_none() && !force {
             // Pieces of a movement may have left a remainder on any axis.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::refusal::Reason;
 use super::state::Modes;
 use crate::block::{Number, Sign};
-use crate::coordinates::Axis;
+use crate::coordinates::{AXES, Axis};
 use crate::dialect::{Dialect, Integers};
 
 /// mm of an inch.
@@ -18,6 +18,10 @@ pub(super) struct Scale {
     unit: f64,
     /// Units of a step.
     increment: f64,
+    /// Steps of a unit, where that is a whole number.
+    per_unit: Option<f64>,
+    /// mm or degrees of a step.
+    step: f64,
     /// Decimals of a step.
     decimals: u8,
     /// Numbers without a point are steps.
@@ -34,6 +38,7 @@ impl Scale {
             scale.rotary = true;
         } else if modes.diameter && dialect.diameter() == Some(axis) {
             scale.unit /= 2.0;
+            scale.step /= 2.0;
         }
         scale
     }
@@ -48,9 +53,12 @@ impl Scale {
     }
 
     fn new(dialect: &Dialect, unit: f64, increment: f64) -> Self {
+        let per_unit = (1.0 / increment).round();
         Self {
             unit,
             increment,
+            per_unit: ((per_unit * increment - 1.0).abs() < 1e-9).then_some(per_unit),
+            step: unit * increment,
             decimals: (-increment.log10()).round().clamp(0.0, 9.0) as u8,
             integers_are_steps: dialect.numbers().integers == Integers::Increments,
             rotary: false,
@@ -58,8 +66,8 @@ impl Scale {
     }
 
     /// mm or degrees of a step.
-    pub fn step(&self) -> f64 {
-        self.unit * self.increment
+    pub const fn step(&self) -> f64 {
+        self.step
     }
 
     /// What a number says, mm or degrees.
@@ -90,13 +98,39 @@ impl Scale {
                 digits: 15,
             });
         }
-        let per_unit = (1.0 / self.increment).round();
-        let units = if (per_unit * self.increment - 1.0).abs() < 1e-9 {
-            steps / per_unit
-        } else {
-            steps * self.increment
+        let units = match self.per_unit {
+            Some(per_unit) => steps / per_unit,
+            None => steps * self.increment,
         };
         Ok((steps as i64, units * self.unit))
+    }
+}
+
+/// The scales of all axes in the modes in force.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scales {
+    axes: [Scale; AXES],
+    /// What they were made for: inches, diameter.
+    modes: (bool, bool),
+}
+
+impl Scales {
+    pub fn new(dialect: &Dialect, modes: &Modes) -> Self {
+        Self {
+            axes: Axis::ALL.map(|axis| Scale::of(dialect, modes, axis)),
+            modes: (modes.inches, modes.diameter),
+        }
+    }
+
+    /// Makes them anew where the modes have changed.
+    pub fn follow(&mut self, dialect: &Dialect, modes: &Modes) {
+        if self.modes != (modes.inches, modes.diameter) {
+            *self = Self::new(dialect, modes);
+        }
+    }
+
+    pub const fn of(&self, axis: Axis) -> &Scale {
+        &self.axes[axis.index()]
     }
 }
 

@@ -1,67 +1,68 @@
-//! The program corrected by the terms.
+//! The program corrected by the terms, block by block.
 
-use std::fmt::Write as _;
-
-use leadscrew_nc::coordinates::{Axis, Coordinates};
-use leadscrew_nc::terms::{Circumstances, Terms};
+use leadscrew_nc::coordinates::Axis;
+use leadscrew_nc::corrector::{Corrector, correct};
+use leadscrew_nc::dialect::Dialect;
+use leadscrew_nc::machine_state::{MachineState, Places, Tool, WorkOffsets};
+use leadscrew_nc::path::Tolerance;
+use leadscrew_nc::terms::Terms;
 
 use super::ProveOutError;
-use super::part::tool;
-use super::world::control_point;
+use super::part::TOOLS;
+use super::world::work_offset;
 
-/// The program with K added to every target, feeds in pieces of 5 mm: for straight programs in absolute coordinates of one work
-/// offset, as this one is.
-pub(super) fn corrected(program: &str, terms: &Terms) -> Result<String, ProveOutError> {
-    let mut out = String::new();
-    let mut at = [0.0_f64; 3];
-    let (mut number, mut feeding) = (0, false);
-    for line in program.lines() {
-        let mut to = at;
-        for word in line.split_whitespace().filter(|_| !line.starts_with('(')) {
-            let value: f64 = word[1..].parse().unwrap_or(0.0);
-            match &word[..1] {
-                "X" => to[0] = value,
-                "Y" => to[1] = value,
-                "Z" => to[2] = value,
-                "T" => number = value as u32,
-                "G" if word == "G0" => feeding = false,
-                "G" if word == "G1" => feeding = true,
-                _ => {}
-            }
-        }
-        if to == at {
-            out += line;
-            out.push('\n');
-            continue;
-        }
-        let length = (0..3).map(|i| (to[i] - at[i]).powi(2)).sum::<f64>().sqrt();
-        let pieces = if feeding {
-            (length / 5.0).ceil() as usize
-        } else {
-            1
-        };
-        let tool = tool(number).ok_or(ProveOutError::Tool(number))?;
-        let with = Circumstances {
-            tool: Some(number),
-            tool_offset: Some(Coordinates::xyz(0.0, 0.0, tool.length_mm)),
-            ..Circumstances::default()
-        };
-        for piece in 1..=pieces {
-            let part = piece as f64 / pieces as f64;
-            let place: [f64; 3] = std::array::from_fn(|i| at[i] * (1.0 - part) + to[i] * part);
-            let k = terms
-                .correction(&control_point(place, tool.length_mm), &with)
-                .map_err(|error| ProveOutError::Correction(error.to_string()))?;
-            let code = if feeding { "G1" } else { "G0" };
-            let _ = writeln!(
-                out,
-                "{code} X{:.4} Y{:.4} Z{:.4}",
-                place[0] + k[Axis::X],
-                place[1] + k[Axis::Y],
-                place[2] + k[Axis::Z]
-            );
-        }
-        at = to;
+/// How far the written path may be from the truly corrected one, mm: below what the probe sees.
+const TOLERANCE_MM: f64 = 1e-4;
+/// Where the axes stand at the start and at a tool change, machine coordinates, mm: clear of the part.
+const HOME_MM: [f64; 3] = [0.0, 200.0, -100.0];
+
+/// The program with K in it.
+///
+/// # Errors
+/// A block that is refused, or a state of the machine that does not fit its dialect.
+pub(super) fn corrected(program: &str, terms: Terms) -> Result<String, ProveOutError> {
+    let wrong = |error: &dyn std::fmt::Display| ProveOutError::Correction(error.to_string());
+    let dialect = Dialect::named("linuxcnc-mill")
+        .ok_or_else(|| wrong(&"there is no dialect linuxcnc-mill"))?;
+    let tolerance = Tolerance {
+        mm: TOLERANCE_MM,
+        degrees: TOLERANCE_MM,
+    };
+    let mut corrector =
+        Corrector::new(dialect, &control(), terms, tolerance).map_err(|error| wrong(&error))?;
+    let mut out = Vec::new();
+    correct(program.as_bytes(), &mut out, &mut corrector).map_err(|error| wrong(&error))?;
+    String::from_utf8(out).map_err(|error| wrong(&error))
+}
+
+/// What the control knows and the program does not say.
+fn control() -> MachineState {
+    let [x, y, z] = work_offset();
+    let origin = Places::from([(Axis::X, x), (Axis::Y, y), (Axis::Z, z)]);
+    let home = Places::from([
+        (Axis::X, HOME_MM[0]),
+        (Axis::Y, HOME_MM[1]),
+        (Axis::Z, HOME_MM[2]),
+        (Axis::B, 0.0),
+    ]);
+    let tools = TOOLS.iter().map(|tool| {
+        let offset = Places::from([(Axis::Z, tool.length_mm)]);
+        (
+            tool.number,
+            Tool {
+                offset,
+                radius_mm: None,
+            },
+        )
+    });
+    MachineState {
+        start: home,
+        work_offsets: WorkOffsets {
+            active: Some("G54".to_owned()),
+            origins: [("G54".to_owned(), origin)].into(),
+            ..WorkOffsets::default()
+        },
+        tools: tools.collect(),
+        ..MachineState::default()
     }
-    Ok(out)
 }

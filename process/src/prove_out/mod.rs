@@ -193,7 +193,7 @@ pub fn prove_out(
     };
 
     let terms = compute::terms(&found, &certified, plant)?;
-    let corrected = corrected(PROGRAM, &terms)?;
+    let corrected = corrected(PROGRAM, terms)?;
     world.cut(&feeds(&corrected)?, false)?;
     let true_after = true_touches(&world, false);
     let after = figures(&true_after)?;

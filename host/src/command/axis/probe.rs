@@ -3,17 +3,16 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::{Table, presets};
 use leadscrew::probe::ProbeEnd;
 use leadscrew_client::{Axis, ProbeStatus, Touch};
 use serde::Serialize;
 
 use crate::axis::values::named_request;
 use crate::cli::ProbeArgs;
-use crate::command::{print, print_json};
+use crate::command::{print, print_json, write_file};
 use crate::error::CommandError;
 use crate::fault_names::probe_end_name;
-use crate::whole_file;
+use crate::report::text_table;
 
 /// Checks what is asked before the axis is.
 ///
@@ -100,9 +99,7 @@ fn write_csv(path: &Path, touches: &[Touch]) -> Result<(), CommandError> {
             touch.tick
         );
     }
-    whole_file::write(path, |file| {
-        std::io::Write::write_all(file, text.as_bytes())
-    })
+    write_file(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// A touch in the report.
@@ -175,9 +172,7 @@ impl Report {
     }
 
     fn to_text(&self) -> String {
-        let mut table = Table::new();
-        table.load_preset(presets::NOTHING);
-        table.set_header([
+        let mut table = text_table(&[
             "touch",
             "position, mm",
             "1σ, mm",

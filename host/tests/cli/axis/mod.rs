@@ -2,6 +2,7 @@
 
 mod orders;
 mod params;
+mod probe;
 mod refused;
 mod script;
 mod served;
