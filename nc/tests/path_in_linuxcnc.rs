@@ -321,7 +321,7 @@ fn is_understood(refusal: &str) -> bool {
 }
 
 proptest::proptest! {
-    #![proptest_config(random_programs::cases(24))]
+    #![proptest_config(random_programs::cases(12))]
 
     #[test]
     fn programs_drawn_at_random(draws in random_programs::draws()) {

@@ -254,8 +254,43 @@ impl Task<'_> {
                 let value = self.value(word)? + by;
                 self.rewrite(word, value, &self.centre_scale())?;
             }
+            return self.say(goals, &k, AxisSet::NONE);
         }
-        self.say(goals, &k, AxisSet::NONE)
+        self.say(goals, &k, AxisSet::NONE)?;
+        self.check_moved_radius(goals, form, &started, &k)
+    }
+
+    /// R stays; the remainders of rounding at both ends must not move the centre that the control works out.
+    fn check_moved_radius(
+        &self,
+        goals: &Goals,
+        form: Form,
+        started: &Coordinates,
+        k: &Coordinates,
+    ) -> Result<(), Found> {
+        let Form::Radius(word) = form else {
+            return Ok(());
+        };
+        let plane = self.now.modes.plane;
+        let (mut from, mut way, mut to) = (Coordinates::ZERO, Coordinates::ZERO, Coordinates::ZERO);
+        for axis in plane.axes() {
+            way[axis] = goals[axis.index()].way;
+            from[axis] = started[axis];
+            to[axis] = way[axis] + self.now.axes[axis.index()].applied;
+        }
+        let radius = self.value(word)?;
+        let tolerance = self.known.radius_tolerance_mm;
+        let arc = |from, to| Arc::from_radius(plane, from, to, radius, false, 1, tolerance);
+        let (Ok(meant), Ok(written)) = (arc(Coordinates::ZERO, way), arc(from, to)) else {
+            return Ok(());
+        };
+        let [first, second] = plane.axes();
+        let off_mm = (written.centre[0] - meant.centre[0] - k[first])
+            .hypot(written.centre[1] - meant.centre[1] - k[second]);
+        if off_mm > self.known.tolerance.mm {
+            return Err((self.at(), Reason::RadiusForm { off_mm }));
+        }
+        Ok(())
     }
 
     /// Writes a leg along a circle into the block.
@@ -277,7 +312,10 @@ impl Task<'_> {
         let scale = self.centre_scale();
         match self.form()? {
             Form::Radius(word) => {
-                self.rewrite(word, circle.signed_radius(), &scale)?;
+                self.say(goals, k, force)?;
+                let radius = self.radius_to_say(goals, &started, circle)?;
+                self.rewrite(word, radius, &scale)?;
+                return Ok(());
             }
             Form::Centre => {
                 for (axis, value) in self.centre_words(goals, &started, circle) {
@@ -321,8 +359,9 @@ impl Task<'_> {
         if let Form::Radius(word) = self.form()? {
             let style = self.block.words[word].number();
             let style = style.unwrap_or_else(|| default_style(&self.known.dialect, b'R'));
-            self.add_word(b'R', circle.signed_radius(), &scale, style, text)?;
-            return self.check_radii(goals, started, circle);
+            let radius = self.radius_to_say(goals, started, circle)?;
+            self.add_word(b'R', radius, &scale, style, text)?;
+            return Ok(());
         }
         for (axis, value) in self.centre_words(goals, started, circle) {
             let letter = LETTERS[axis.index()];
@@ -369,6 +408,49 @@ impl Task<'_> {
             };
             (axis, value)
         })
+    }
+
+    /// R as it can be written, with which the control, that works out the centre from the ends written, comes nearest to the
+    /// circle. Near to half a turn a last digit of R moves the centre by many: √(R² − half²).
+    fn radius_to_say(
+        &self,
+        goals: &Goals,
+        started: &Coordinates,
+        circle: &Circle,
+    ) -> Result<f64, Found> {
+        let plane = self.now.modes.plane;
+        let (mut from, mut to) = (Coordinates::ZERO, Coordinates::ZERO);
+        for axis in plane.axes() {
+            let goal = &goals[axis.index()];
+            from[axis] = circle_frame(goal) - goal.way + started[axis];
+            to[axis] = circle_frame(goal) + self.now.axes[axis.index()].applied;
+        }
+        let off = |radius: f64| {
+            let tolerance = self.known.radius_tolerance_mm;
+            let clockwise = circle.sweep < 0.0;
+            let arc = Arc::from_radius(plane, from, to, radius, clockwise, 1, tolerance);
+            arc.map_or(f64::INFINITY, |arc| {
+                let [x, y] = arc.centre;
+                let centre = (x - circle.centre[0]).hypot(y - circle.centre[1]);
+                centre + (arc.radii[0] - circle.radius).abs()
+            })
+        };
+        let exact = circle.signed_radius();
+        let scale = self.centre_scale();
+        let nearest = scale
+            .nearest(exact, b'R')
+            .map_err(|reason| (self.at(), reason))?
+            .1;
+        let step = scale.step();
+        let (radius, off_mm) = [nearest, nearest - step, nearest + step]
+            .map(|radius| (radius, off(radius)))
+            .into_iter()
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((nearest, f64::INFINITY));
+        if off_mm > self.known.tolerance.mm {
+            return Err((self.at(), Reason::RadiusForm { off_mm }));
+        }
+        Ok(radius)
     }
 
     /// What the control will find: radii at both ends of what was written.

@@ -170,6 +170,11 @@ pub enum Reason {
         /// By how much, mm.
         by_mm: f64,
     },
+    /// The centre that the control works out of R and the ends would be elsewhere, however R is rounded.
+    RadiusForm {
+        /// By how much at least, mm.
+        off_mm: f64,
+    },
     /// A cycle, spline or thread whose correction changes along it.
     Changes {
         /// What it is.
@@ -240,6 +245,7 @@ impl Reason {
             }
             Self::NotSplit { within, .. } => within.advice().into(),
             Self::ArcStart { .. } => "lead in with a straight movement".into(),
+            Self::RadiusForm { .. } => "write the arc with I, J and K instead of R".into(),
             Self::Changes { .. } => "write it as single movements, or raise the tolerance".into(),
             _ => return None,
         })
@@ -397,6 +403,12 @@ impl fmt::Display for Reason {
             Self::Path(error) => error.fmt(f),
             Self::ArcStart { by_mm } => {
                 write!(f, "the arc would begin {by_mm:.4} mm beside its circle")
+            }
+            Self::RadiusForm { off_mm } => {
+                write!(
+                    f,
+                    "with R in whole steps the centre of the corrected arc would be {off_mm:.4} mm off"
+                )
             }
             Self::Changes { what, share } => {
                 write!(

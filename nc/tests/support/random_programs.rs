@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// One movement as it is drawn.
 #[derive(Clone, Debug)]
@@ -20,7 +21,9 @@ pub struct Draw {
 pub fn cases(count: u32) -> ProptestConfig {
     let long = std::env::var_os("LEADSCREW_LONG").is_some();
     ProptestConfig {
-        max_shrink_iters: 80,
+        max_shrink_iters: if long { 80 } else { 0 },
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
         ..ProptestConfig::with_cases(if long { 20 * count } else { count })
     }
 }
@@ -190,7 +193,7 @@ pub fn program(draws: &[Draw]) -> String {
         incremental: false,
         plane: 0,
         centre_absolute: false,
-        steps: usize::from(draws.len() % 2 == 0),
+        steps: usize::from(draws.len().is_multiple_of(2)),
     };
     for draw in draws {
         writer.step(draw);
