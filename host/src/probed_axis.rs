@@ -1,30 +1,122 @@
-//! The axis that the prove-out probes with.
+//! The axis that the prove-out probes with: the core's probing cycle on a simulated machine.
+//!
+//! One simulated axis stands for all of them, one after the other. A touch is run where the surface stands within a revolution of the
+//! encoder, whose errors matter, and somewhere in the travel, which does not.
 
-use leadscrew_process::prove_out::{Draws, Touching};
+use leadscrew::encoder_map::EncoderMap;
+use leadscrew::estimator::EstimatorConfig;
+use leadscrew::params::AxisParams;
+use leadscrew::probe::ProbeParams;
+use leadscrew_hal_mock::board::TouchProbeParams;
+use leadscrew_hal_mock::encoder::EncoderModel;
+use leadscrew_hal_mock::machine::MachineParams;
+use leadscrew_hal_mock::scenario::MoveAndBack;
+use leadscrew_hal_mock::touching::{TouchBench, plant_with_probe};
+use leadscrew_process::prove_out::Touching;
 
-/// Stream of the seed that the probe scatters by.
-const STREAM: u64 = 41;
+use crate::calibration::{Procedure, learn_simulated};
 
-/// A probe that triggers with its repeatability, on an axis that latches where it stands.
-pub struct ProbedAxis {
-    sigma_mm: f64,
-    draws: Draws,
+const TICK_HZ: f64 = 1000.0;
+/// Feeds of the approach and of the touch, mm/min.
+const APPROACH: f64 = 2000.0;
+const TOUCH: f64 = 100.0;
+/// From where, and how far beyond the surface, a touch goes, mm.
+const BEFORE_MM: f64 = 0.6;
+const BEYOND_MM: f64 = 0.5;
+/// Travel of the screw a revolution, mm, and whole revolutions away from where the axis starts.
+const REVOLUTION_MM: f64 = 10.0;
+const AWAY_MM: f64 = 20.0;
+/// Trigger delay of the simulated probe, s, as calibrated.
+const DELAY_S: f64 = 5e-4;
+/// Its jitter, s.
+const JITTER_S: f64 = 1e-5;
+/// 2σ of the latch itself with a learned map, mm.
+const LATCH_2S_MM: f64 = 1e-4;
+
+/// The map of the simulated encoder of a seed, learned by the product's own calibration.
+///
+/// # Errors
+/// A calibration that fails.
+pub fn learned_map(seed: u64) -> Result<Vec<u8>, String> {
+    let procedure = Procedure {
+        tick_hz: TICK_HZ,
+        ..Procedure::default()
+    };
+    learn_simulated(&EncoderModel::real(), seed, &procedure).map_err(|error| error.to_string())
 }
 
-impl ProbedAxis {
-    /// A probe of so much repeatability, 2σ in mm.
-    #[must_use]
-    pub fn new(repeatability_2s_mm: f64, seed: u64) -> Self {
-        Self {
-            sigma_mm: 0.5 * repeatability_2s_mm,
-            draws: Draws::new(seed, STREAM),
-        }
+/// A simulated axis with its probe.
+pub struct ProbedAxis<'m> {
+    bench: TouchBench<'m>,
+    sigma_mm: f64,
+}
+
+impl<'m> ProbedAxis<'m> {
+    /// An axis with a learned map and a probe of so much repeatability, 2σ in mm.
+    ///
+    /// # Errors
+    /// An axis that does not become ready.
+    pub fn new(map: &'m [u8], repeatability_2s_mm: f64, seed: u64) -> Result<Self, String> {
+        let machine = MachineParams::z_16k20f3();
+        let probe = TouchProbeParams {
+            surface_mm: AWAY_MM,
+            at_shaft: 1.0,
+            delay_s: DELAY_S,
+            jitter_s: JITTER_S,
+            repeatability_2s_mm,
+            ..TouchProbeParams::default()
+        };
+        let said = |error: &dyn std::fmt::Display| error.to_string();
+        let map = EncoderMap::from_bytes(map).map_err(|error| said(&error))?;
+        let params = params(&machine)?;
+        let plant = plant_with_probe(machine, probe);
+        let mut bench =
+            TouchBench::new(&plant, &params, Some(map), seed).map_err(|error| said(&error))?;
+        // Over the index, for the map.
+        bench
+            .go_to(1.2 * REVOLUTION_MM, APPROACH)
+            .map_err(|error| said(&error))?;
+        Ok(Self {
+            bench,
+            sigma_mm: 0.5 * repeatability_2s_mm.hypot(LATCH_2S_MM),
+        })
     }
 }
 
-impl Touching for ProbedAxis {
-    fn touch(&mut self, contact_mm: f64, _: f64) -> Result<f64, String> {
-        Ok(contact_mm + self.sigma_mm * self.draws.normal())
+fn params(machine: &MachineParams) -> Result<AxisParams, String> {
+    let estimator = EstimatorConfig::by_name("exponential")
+        .ok()
+        .flatten()
+        .ok_or("there is no exponential estimator")?;
+    let params = MoveAndBack::standard(TICK_HZ).axis_params(machine, estimator);
+    Ok(AxisParams {
+        probe: ProbeParams {
+            trigger_delay_s: DELAY_S,
+            trigger_jitter_s: JITTER_S,
+            ..ProbeParams::default()
+        },
+        ..params.map_err(|error| error.to_string())?
+    })
+}
+
+impl Touching for ProbedAxis<'_> {
+    fn touch(&mut self, contact_mm: f64, from_mm: f64) -> Result<f64, String> {
+        let way = (contact_mm - from_mm).signum();
+        let here = AWAY_MM + contact_mm.rem_euclid(REVOLUTION_MM);
+        self.bench
+            .go_to(here - BEFORE_MM * way, APPROACH)
+            .map_err(|error| error.to_string())?;
+        let touched = self
+            .bench
+            .touch(here, here + BEYOND_MM * way, TOUCH, BEYOND_MM)
+            .map_err(|error| error.to_string())?;
+        let touch = touched
+            .report
+            .touch
+            .filter(|_| touched.report.is_good())
+            .ok_or_else(|| format!("probing ended with {:?}", touched.report.end))?;
+        let latched = 1e-3 * touch.raw.to_num::<f64>();
+        Ok(contact_mm + latched - here)
     }
 
     fn sigma_mm(&self) -> f64 {

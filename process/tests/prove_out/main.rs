@@ -29,7 +29,7 @@ fn run(seed: u64, sigma_mm: f64, amounts: &Amounts, plant: Plant) -> ProveOut {
 /// A probe of 2σ = 1 µm.
 const PROBE_MM: f64 = 5e-4;
 
-/// The bound is 4σ of a computation from 25 touches of 1σ = 0.5 µm and a certificate; over 12 worlds all figures keep it, and the
+/// The bound is 4σ of a computation from 38 touches of 1σ = 0.5 µm and a certificate; over 12 worlds all figures keep it, and the
 /// bound is no empty one: their scatter is of the size of the stated 1σ.
 #[test]
 fn every_figure_falls_to_the_noise_of_the_probe() {

@@ -11,12 +11,13 @@ use self::report::Report;
 use super::{check_outputs_of, print, print_json};
 use crate::cli::ProveOutArgs;
 use crate::error::CommandError;
-use crate::probed_axis::ProbedAxis;
+use crate::probed_axis::{ProbedAxis, learned_map};
 use crate::progress::Progress;
 use crate::whole_file;
 
-/// 2σ of a probe that is believed, µm.
-const PROBE_UM: (f64, f64) = (0.01, 100.0);
+/// 2σ of a probe that is believed, µm: one that scatters by more touches again as it is withdrawn from the simulated surface, which
+/// releases it after 5 µm.
+const PROBE_UM: (f64, f64) = (0.01, 5.0);
 
 /// Runs the command.
 ///
@@ -35,9 +36,11 @@ pub fn run(args: &ProveOutArgs) -> Result<(), CommandError> {
         )));
     }
     let data = |error: &dyn std::fmt::Display| CommandError::Data(error.to_string());
-    let mut axis = ProbedAxis::new(1e-3 * args.probe_um, args.seed);
     let out = {
         let _proving = Progress::endless("machining and probing");
+        let map = learned_map(args.seed).map_err(CommandError::Data)?;
+        let mut axis =
+            ProbedAxis::new(&map, 1e-3 * args.probe_um, args.seed).map_err(CommandError::Data)?;
         prove_out(&Amounts::default(), Plant::Nothing, args.seed, &mut axis)
             .map_err(|error| data(&error))?
     };

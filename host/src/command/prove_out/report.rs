@@ -50,6 +50,7 @@ struct Setting {
 #[derive(Serialize)]
 struct Tool {
     tool: u32,
+    /// 0 along axes that none of its features looks along.
     found_mm: [f64; 3],
     truth_mm: [f64; 3],
 }
@@ -128,8 +129,12 @@ impl Report {
         let _ = writeln!(text, "  truth {}", scaled(&self.setting.truth));
         for tool in &self.tools {
             let list = |values: &[f64; 3]| {
-                let values = values.iter().map(|value| format!("{value:.4}"));
-                values.collect::<Vec<_>>().join(" ")
+                let values = values.iter().zip(&tool.found_mm);
+                let text = values.map(|(value, found)| match *found {
+                    0.0 => "-".to_owned(),
+                    _ => format!("{value:.4}"),
+                });
+                text.collect::<Vec<_>>().join(" ")
             };
             let _ = writeln!(
                 text,
