@@ -39,14 +39,14 @@ fn the_bounds_grow_with_the_noise_of_the_probe() {
         let report = folder.json(&format!("prove-out --probe-um {um}"));
         of(&report, "bound").sum()
     };
-    assert!(bounds(8.0) > 2.0 * bounds(1.0));
+    assert!(bounds(4.0) > 1.5 * bounds(1.0));
 }
 
 #[test]
 fn a_probe_that_cannot_be_is_refused() {
     let folder = Folder::new();
     let error = folder.refused(2, "prove-out --probe-um 0");
-    assert_says(&error, &["--probe-um 0", "0.01 to 100 um"]);
+    assert_says(&error, &["--probe-um 0", "0.01 to 5 um"]);
     assert_says(
         &folder.refused(2, "prove-out --plot p.gif"),
         &[".svg or .png"],
