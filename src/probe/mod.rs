@@ -28,6 +28,8 @@ pub mod config;
 mod failure;
 mod fit;
 mod history;
+mod place;
+mod stages;
 mod touch;
 mod trigger;
 
@@ -35,8 +37,8 @@ pub use config::{Config, ProbeParams};
 pub use failure::{ProbeEnd, ProbeRefused};
 pub use touch::{Report, Touch};
 
-use self::config::TIME_FRAC;
 use self::history::History;
+use self::place::by_count;
 use self::trigger::{Edge, Trigger};
 use crate::capture::Observation;
 use crate::edges::EdgeReader;
@@ -44,7 +46,7 @@ use crate::estimator::Estimate;
 use crate::setpoint::Setpoint;
 use crate::setpoint::follower::Follower;
 use crate::setpoint::travel::TravelLimits;
-use crate::units::{Position, Variance, Velocity};
+use crate::units::{Position, Velocity};
 
 /// What probing is at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -337,207 +339,10 @@ impl Probe {
         }
     }
 
-    /// Where the stage wants to go.
-    const fn target(&self) -> Velocity {
-        let (speed, ahead) = match self.stage {
-            Stage::Approach => (self.order.feed, true),
-            Stage::Retract => (self.config.retract, false),
-            Stage::Idle | Stage::Stop | Stage::Brake | Stage::Halt => return Velocity::ZERO,
-        };
-        let bits = speed.to_bits();
-        if (self.direction > 0) == ahead {
-            Velocity::from_bits(bits)
-        } else {
-            Velocity::from_bits(bits.wrapping_neg())
-        }
-    }
-
-    /// Notes where the shaft was, as long as that may tell where a touch was.
-    fn gather(&mut self, sight: &Sight<'_>) {
-        let is_open = match (self.stage, &self.edge) {
-            (Stage::Approach, None) => true,
-            (Stage::Approach | Stage::Stop, Some(noted)) => noted.instant.is_some_and(|instant| {
-                let since = self.history.now().wrapping_sub(instant);
-                since < self.config.sample.saturating_mul(SAMPLES_AFTER)
-            }),
-            _ => false,
-        };
-        if is_open {
-            let elapsed = sight.edges.elapsed(sight.observation);
-            let sample = sight.edges.sample(sight.observation);
-            self.history.note(elapsed, sample, self.config.sample);
-        }
-    }
-
-    fn approach(&mut self, edge: Option<Edge>, was_closed: bool, sight: &Sight<'_>) {
-        self.note_edge(sight);
-        let stands = self.follower.is_at_rest();
-        if was_closed || stands && sight.observation.is_touching() {
-            self.trigger.close();
-            return self.end_with(ProbeEnd::AlreadyTouching);
-        }
-        if edge.is_some() {
-            self.settling = self.config.settle;
-            self.stage = Stage::Stop;
-        } else if self.has_arrived(self.order.target, self.direction) {
-            self.end_with(ProbeEnd::NoTouch);
-        }
-    }
-
-    /// Keeps the edge that may become a touch, and lets it go if it was a glitch.
-    fn note_edge(&mut self, sight: &Sight<'_>) {
-        let Some(edge) = self.trigger.pending() else {
-            if !self.trigger.is_closed() {
-                self.edge = None;
-            }
-            return;
-        };
-        if self.edge.is_some_and(|noted| noted.edge == edge) {
-            return;
-        }
-        let clocks = sight.observation.sampled_at.wrapping_sub(edge.latch.time);
-        let age = u32::try_from(clocks)
-            .ok()
-            .and_then(|clocks| sight.edges.ticks_of(clocks, TIME_FRAC));
-        self.edge = Some(Noted {
-            edge,
-            tick: sight.tick,
-            instant: age.map(|age| self.history.now().wrapping_sub(age)),
-        });
-    }
-
-    fn stop(&mut self, sight: &Sight<'_>) {
-        if let Some(noted) = self.edge.take() {
-            self.find(&noted, sight);
-        }
-        self.measure(sight);
-        if !self.follower.is_at_rest() {
-            return;
-        }
-        self.settling = self.settling.saturating_sub(1);
-        if self.settling != 0 {
-            return;
-        }
-        if self.order.retract > 0 {
-            let way = self.direction.wrapping_mul(self.order.retract.to_bits());
-            let from = self.follower.now().position;
-            self.back = Position::from_bits(from.to_bits().wrapping_sub(way));
-            self.stage = Stage::Retract;
-        } else {
-            self.finish(ProbeEnd::Touched);
-        }
-    }
-
-    fn retract(&mut self, edge: Option<Edge>) {
-        if edge.is_some() {
-            self.end_with(ProbeEnd::TouchedOnRetract);
-        } else if self.has_arrived(self.back, self.direction.wrapping_neg()) {
-            self.stage = Stage::Brake;
-        }
-    }
-
-    fn brake(&mut self, edge: Option<Edge>, observation: &Observation<'_>) {
-        if edge.is_some() {
-            self.end_with(ProbeEnd::TouchedOnRetract);
-        } else if self.follower.is_at_rest() {
-            self.finish(if observation.is_touching() {
-                ProbeEnd::StillTouching
-            } else {
-                ProbeEnd::Touched
-            });
-        }
-    }
-
-    /// True if a stop that begins now ends at `place` in `direction`, or would pass it if it began a tick later.
-    fn has_arrived(&self, place: Position, direction: i64) -> bool {
-        let now = self.follower.now();
-        let end = now
-            .position
-            .saturating_add(self.follower.stopping_distance(&now));
-        let left = place.saturating_sub(end).to_bits().wrapping_mul(direction);
-        let tick = i64::from(now.velocity.to_bits())
-            .wrapping_abs()
-            .wrapping_shr(Velocity::FRAC_NBITS - Position::FRAC_NBITS);
-        left <= tick
-    }
-
-    /// Where the touch was.
-    fn find(&mut self, noted: &Noted, sight: &Sight<'_>) {
-        let touch = self.by_edges(noted, sight);
-        self.touch = Some(touch.unwrap_or_else(|| Touch {
-            tick: noted.tick,
-            ..by_count(&noted.edge, sight, &self.config)
-        }));
-        self.note_touch();
-    }
-
-    /// By the samples about it; none where there are too few, or where they contradict what the hardware counted.
-    fn by_edges(&self, noted: &Noted, sight: &Sight<'_>) -> Option<Touch> {
-        let Noted {
-            edge,
-            tick,
-            instant,
-        } = *noted;
-        if !edge.is_latched {
-            return None;
-        }
-        let Config {
-            delay,
-            sample,
-            slope_reach,
-            ..
-        } = self.config;
-        let instant = instant?.wrapping_sub(delay.cast_unsigned());
-        let counted = middle_of(edge.latch.count);
-        let noise = sight.edges.noise();
-        let found = fit::at(&self.history, instant, sample, counted, noise)?;
-        let delayed = way_in(found.velocity, delay);
-        let off = found
-            .place
-            .saturating_add(delayed)
-            .saturating_sub(counted)
-            .saturating_abs();
-        if off > MOST_OFF {
-            return None;
-        }
-        let variance = found
-            .variance
-            .saturating_add(noise.of_place(slope_reach))
-            .saturating_add(self.config.jitter_variance(found.velocity));
-        Some(Touch {
-            raw: found.place,
-            position: found.place,
-            variance: Variance::from_bits(variance),
-            velocity: found.velocity,
-            time: edge.latch.time,
-            tick,
-            overtravel: Position::ZERO,
-            edges: found.edges,
-        })
-    }
-
-    /// Follows how far the axis goes on after the contact.
-    fn measure(&mut self, sight: &Sight<'_>) {
-        if let Some(touch) = &mut self.touch {
-            let gone = sight
-                .observation
-                .position()
-                .saturating_sub(touch.raw)
-                .to_bits();
-            let gone = Position::from_bits(gone.wrapping_mul(self.direction));
-            touch.overtravel = touch.overtravel.max(gone);
-        }
-    }
-
     fn note_touch(&mut self) {
         self.report.touches = self.report.touches.wrapping_add(1);
         self.report.touch = self.touch;
         self.is_unplaced = true;
-    }
-
-    fn end_with(&mut self, end: ProbeEnd) {
-        self.end = end;
-        self.stage = Stage::Halt;
     }
 
     fn finish(&mut self, end: ProbeEnd) {
@@ -550,54 +355,5 @@ impl Probe {
         self.report.end = Some(end);
         self.report.touch = self.touch.take();
         self.edge = None;
-    }
-}
-
-/// So many samples after the contact tell enough of it.
-const SAMPLES_AFTER: u32 = 8;
-/// A place by the edges lies no farther from what the hardware counted than the encoder's own errors, d.
-const MOST_OFF: Position = Position::from_bits(12 << Position::FRAC_NBITS);
-
-/// The middle of a discrete.
-const fn middle_of(count: i64) -> Position {
-    Position::from_bits(
-        count
-            .wrapping_shl(Position::FRAC_NBITS)
-            .wrapping_add(1 << (Position::FRAC_NBITS - 1)),
-    )
-}
-
-/// Way at `velocity` in a time with [`TIME_FRAC`].
-fn way_in(velocity: Velocity, time: i32) -> Position {
-    let way = i64::from(velocity.to_bits()).wrapping_mul(i64::from(time));
-    Position::from_bits(way.wrapping_shr(Velocity::FRAC_NBITS + TIME_FRAC - Position::FRAC_NBITS))
-}
-
-/// A touch by what the hardware counted and what is estimated of the velocity.
-fn by_count(edge: &Edge, sight: &Sight<'_>, config: &Config) -> Touch {
-    let velocity = sight.estimate.velocity;
-    let raw = middle_of(edge.latch.count).saturating_sub(way_in(velocity, config.delay));
-    // Within a count, and within a tick where nothing latched: a twelfth of each squared.
-    const OF_COUNT: u64 = (1 << 48) / 12;
-    let of_tick = if edge.is_latched {
-        0
-    } else {
-        let speed = u64::from(velocity.to_bits().unsigned_abs());
-        speed.wrapping_mul(speed).wrapping_shr(3)
-    };
-    // v²/12 in 2⁻⁴⁸ is 2⁸/12 of its bits, and 2⁸/12 is 171/8.
-    let of_tick = of_tick.saturating_mul(171);
-    let variance = OF_COUNT
-        .saturating_add(of_tick)
-        .saturating_add(config.jitter_variance(velocity));
-    Touch {
-        raw,
-        position: raw,
-        variance: Variance::from_bits(variance),
-        velocity,
-        time: edge.latch.time,
-        tick: sight.tick,
-        overtravel: Position::ZERO,
-        edges: 0,
     }
 }
