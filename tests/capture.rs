@@ -101,6 +101,7 @@ proptest! {
                 overrun: leg.overrun,
                 index: wrapped(count, time, leg.index),
                 probe: wrapped(count, time, leg.probe),
+                touching: false,
                 home: None,
             };
             let seen = unwrapper.unwrap(&capture);

@@ -84,6 +84,7 @@ proptest! {
                         time,
                     }),
                     probe: None,
+                    touching: false,
                     home: None,
                 };
                 let observation = unwrapper.unwrap(&capture);
