@@ -52,6 +52,7 @@ struct Seen {
     illegal: u16,
     overrun: bool,
     index: Option<Latch>,
+    touching: bool,
     probe: Option<Latch>,
     home: Option<Latch>,
 }
@@ -107,6 +108,7 @@ impl FaultyEncoder {
             sampled_at: capture.sampled_at,
             illegal: capture.illegal,
             overrun: capture.overrun,
+            touching: capture.touching,
             probe: capture.probe,
             home: capture.home,
             ..Seen::default()
@@ -293,7 +295,7 @@ impl hal::Encoder for FaultyEncoder {
             last_edge_at: newest.copied(),
             edges,
             illegal: self.seen.illegal,
-            overrun: self.seen.overrun || self.ring.overrun(),
+            touching: self.seen.touching,
             touching: false,
             index: self.seen.index,
             probe: self.seen.probe,

@@ -130,6 +130,7 @@ impl Watched {
             overrun: words.overrun,
             index: latch(words.latches[0]),
             probe: latch(words.latches[1]),
+            touching: words.latches[1].is_some(),
             home: None,
         };
         let outputs = self.axis.step(&Inputs::of(capture, enable));
