@@ -54,15 +54,15 @@ fn the_report_counts_and_names_the_largest_corrections() {
     assert_eq!(
         keys(&report),
         [
-            "schema",
             "blocks",
-            "blocks_changed",
             "blocks_added",
+            "blocks_changed",
             "bytes_read",
             "bytes_written",
-            "seconds",
             "megabytes_per_s",
             "memory_growth_kb",
+            "schema",
+            "seconds",
             "terms"
         ]
     );
