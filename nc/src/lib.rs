@@ -7,6 +7,7 @@ pub mod block;
 pub mod checks;
 pub mod coordinates;
 pub mod corrector;
+pub mod csv_text;
 pub mod dialect;
 pub mod machine_state;
 pub mod path;

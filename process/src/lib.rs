@@ -5,7 +5,6 @@
 #![forbid(unsafe_code)]
 
 pub mod axis_calibration;
-mod csv_text;
 pub mod deviations;
 pub mod metrology;
 pub mod plan;

@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 use leadscrew_nc::source::{Complaint, Place};
 
-use crate::csv_text::{CsvText, Row};
+use leadscrew_nc::csv_text::{CsvText, Row};
 
 /// Which way a target is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -18,7 +18,7 @@ use leadscrew_nc::source::Complaint;
 use serde::Serialize;
 
 use super::figures::Calibration;
-use crate::csv_text::CsvText;
+use leadscrew_nc::csv_text::CsvText;
 
 /// An error at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

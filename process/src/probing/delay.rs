@@ -7,11 +7,11 @@ use leadscrew_nc::source::Complaint;
 use serde::Serialize;
 
 use super::{RANGE, Value};
-use crate::csv_text::{CsvText, Row};
 use crate::metrology::MetrologyError;
 use crate::metrology::adjustment::{Model, adjust};
 use crate::metrology::fitted::{Quality, Settings};
 use crate::metrology::touch::Touch;
+use leadscrew_nc::csv_text::{CsvText, Row};
 
 const S_PER_MIN: f64 = 60.0;
 /// Columns that `leadscrew probe --csv` writes besides.

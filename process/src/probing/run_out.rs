@@ -12,11 +12,11 @@ use leadscrew_nc::source::Complaint;
 use serde::Serialize;
 
 use super::{RANGE, Value};
-use crate::csv_text::{CsvText, Row};
 use crate::metrology::MetrologyError;
 use crate::metrology::adjustment::{Model, adjust};
 use crate::metrology::fitted::{Quality, Settings};
 use crate::metrology::touch::Touch;
+use leadscrew_nc::csv_text::{CsvText, Row};
 
 /// Angles of the spindle, degrees.
 const ANGLES: (f64, f64) = (-36_000.0, 36_000.0);

@@ -17,11 +17,11 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::{RANGE, Value};
-use crate::csv_text::{CsvText, Row};
 use crate::metrology::MetrologyError;
 use crate::metrology::adjustment::{Adjusted, Model, adjust};
 use crate::metrology::fitted::{Quality, Settings};
 use crate::metrology::touch::Touch;
+use leadscrew_nc::csv_text::{CsvText, Row};
 
 /// Largest order of the lobes.
 pub const MOST_ORDER: u32 = 12;
@@ -163,7 +163,7 @@ impl Probed {
     }
 
     /// Where the stylus was from the centre.
-    fn from_centre(&self, touch: &Touch, unknowns: &[f64]) -> Vector3<f64> {
+    fn off_centre(&self, touch: &Touch, unknowns: &[f64]) -> Vector3<f64> {
         let mut from = Vector3::from(touch.measured) - self.start;
         for (axis, unknown) in unknowns[..self.dimensions()].iter().enumerate() {
             from[axis] -= unknown;
@@ -201,7 +201,7 @@ impl Model for Probed {
     }
 
     fn misfit(&self, touch: &Touch, unknowns: &[f64]) -> f64 {
-        let from = self.from_centre(touch, unknowns);
+        let from = self.off_centre(touch, unknowns);
         let towards = from.normalize() * self.side();
         let of_shape = self.shape(&towards).into_iter();
         let radius: f64 = of_shape
@@ -212,7 +212,7 @@ impl Model for Probed {
     }
 
     fn row(&self, touch: &Touch, unknowns: &[f64]) -> Vec<f64> {
-        let outwards = self.from_centre(touch, unknowns).normalize();
+        let outwards = self.off_centre(touch, unknowns).normalize();
         let side = self.side();
         let mut row: Vec<f64> = outwards.iter().copied().take(self.dimensions()).collect();
         let shape = self.shape(&(outwards * side));

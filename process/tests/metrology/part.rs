@@ -199,7 +199,10 @@ fn a_table_is_refused_where_it_is_wrong() {
         read("measured_z_mm", "deviation_mm"),
         &["1:1:", "one of the two only"],
     );
-    refused(read("measured_z_mm", "z_mm"), &["measured_z_mm", "missing"]);
+    refused(
+        read("measured_z_mm", "z_mm"),
+        &["1:1:", "no column", "measured_z_mm"],
+    );
     refused(
         read("top,2", "roof,2"),
         &["3:1:", "`roof`", "it has top, side, I, II, lower, bore"],

@@ -12,8 +12,8 @@
 use leadscrew_nc::source::Complaint;
 
 use super::{Feature, Part, Planned, Touches, normal_of_approach};
-use crate::csv_text::{CsvText, Row};
 use crate::metrology::touch::{Axis, Touch};
+use leadscrew_nc::csv_text::{CsvText, Row};
 
 const NEEDED: [&str; 2] = ["feature", "point"];
 const OPTIONAL: [&str; 9] = [

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use crate::source::{Complaint, Place};
 use csv::{ReaderBuilder, StringRecord, Trim};
-use leadscrew_nc::source::{Complaint, Place};
 
 /// A text as records.
+#[derive(Debug)]
 pub struct CsvText<'t> {
     text: &'t str,
     columns: Vec<String>,
@@ -13,7 +14,7 @@ pub struct CsvText<'t> {
 }
 
 /// A record of it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Row<'c> {
     csv: &'c CsvText<'c>,
     record: &'c StringRecord,
@@ -73,6 +74,7 @@ impl<'t> CsvText<'t> {
     }
 
     /// Whether it has a column.
+    #[must_use]
     pub fn has(&self, column: &str) -> bool {
         self.columns.iter().any(|known| known == column)
     }
@@ -93,6 +95,7 @@ impl<'t> CsvText<'t> {
 
 impl Row<'_> {
     /// The text of a field; empty where the column is not there.
+    #[must_use]
     pub fn text(&self, column: &str) -> &str {
         self.index(column)
             .and_then(|at| self.record.get(at))
@@ -132,8 +135,13 @@ impl Row<'_> {
 
     /// What is wrong with a field.
     pub fn complain(&self, column: &str, message: impl Into<String>) -> Complaint {
-        let at = field(self.csv.text, self.record, self.index(column).unwrap_or(0));
-        Complaint::at(self.csv.text, &at, message)
+        Complaint::at(self.csv.text, &self.span(column), message)
+    }
+
+    /// Where a field stands in the text; that of the first one for a column that is not there.
+    #[must_use]
+    pub fn span(&self, column: &str) -> Range<usize> {
+        field(self.csv.text, self.record, self.index(column).unwrap_or(0))
     }
 
     fn index(&self, column: &str) -> Option<usize> {
