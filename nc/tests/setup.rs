@@ -213,7 +213,7 @@ fn what_is_wrong_is_told_with_line_and_column() {
         (
             "screw-x.csv",
             "volume.toml",
-            "29:8: volume.toml:1:1: 1 values, expected are position_mm",
+            "is not known: expected position_mm, forward_um, backward_um",
         ),
         (
             "axis = \"X\"\nfile",

@@ -7,7 +7,9 @@
 //!
 //! σ²·(1/w + P₁(0)²/ΣP₁² + P₂(0)²/ΣP₂²),
 //!
-//! σ that of an edge, or what the samples' distances from the quadratic show if that is more: least in the samples' middle, and so better with samples after the touch than with those before it alone.
+//! σ that of an edge: least in the samples' middle, and so better with samples after the touch than with those before it
+//! alone. To it comes what the motion has besides a quadratic; where the samples' own distances from it show clearly more,
+//! that counts.
 
 use super::config::TIME_FRAC;
 use super::history::{CAPACITY, History, OLDEST, Sample};
@@ -22,8 +24,12 @@ use crate::units::{Position, Velocity};
 const WINDOW_SAMPLES: u32 = 20;
 /// As many make a good quadratic.
 const ENOUGH: usize = 8;
-/// What a motion has besides a quadratic in the time of a fit, 2⁻⁴⁸ d²: 0.005 d rms on the machine 16K20F3 Z at 20 to 500 mm/min.
-const OF_MOTION: u64 = 7_036_874_418;
+/// What a motion has besides a quadratic in the time of a fit, 2⁻⁴⁸ d²: 0.003 d rms, from the touches of `tests/probe/figures.rs` on the
+/// machine 16K20F3 Z.
+const OF_MOTION: u64 = 2_533_274_790;
+/// What the samples show of the variance of an edge counts from so many times the known one on: by chance a score of samples
+/// shows 2.5 times as much once in a thousand.
+const SIGNIFICANT: u32 = 4;
 /// Samples farther from the fit count as this far, d with [`PLACE_FRAC`].
 const MOST_SCATTER: u64 = 1 << 16;
 /// Fractional bits of the gain of the variance.
@@ -85,11 +91,19 @@ pub fn at(
         .wrapping_sub(about.to_bits())
         .wrapping_shl(64 - WRAP)
         .wrapping_shr(64 - WRAP);
-    let of_edge = noise.of_edge(velocity.to_bits()).max(grid.scatter(&fit));
+    let of_edge = noise.of_edge(velocity.to_bits());
+    let of = |of_edge| variance(&sums, &geometry, of_edge, edges);
+    let known = of(of_edge).saturating_add(OF_MOTION);
+    let seen = grid.scatter(&fit);
+    let variance = if seen > of_edge.saturating_mul(SIGNIFICANT) {
+        known.max(of(seen))
+    } else {
+        known
+    };
     Some(Found {
         place: Position::from_bits(about.to_bits().wrapping_add(off)),
         velocity,
-        variance: variance(&sums, &geometry, of_edge, edges).saturating_add(OF_MOTION),
+        variance,
         edges,
     })
 }

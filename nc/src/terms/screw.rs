@@ -232,17 +232,17 @@ mod tests {
             (
                 "0,0,8",
                 "0,0,",
-                "3:5: backward_um = \"\": a number is expected",
+                "3:5: backward_um = \"\": expected a number",
             ),
             (
                 "0,0,8",
                 "0,0",
-                "3:1: 2 values, expected are position_mm, forward_um, backward_um",
+                "3:1: 2 fields, and the header has 3 columns",
             ),
             (
                 "forward_um,",
                 "forwards,",
-                "2:13: \"forwards\": expected is forward_um",
+                "2:13: column \"forwards\" is not known: expected position_mm, forward_um",
             ),
             ("\n100, 10,20", "", "1:1: the screw map of Z: two places"),
         ] {

@@ -48,13 +48,15 @@ pub fn run(axis: &mut Axis, args: &ProbeArgs) -> Result<(), CommandError> {
         axis.disable()?;
     }
     let (touches, failed) = touched?;
-    if let Some(path) = &args.csv {
+    if let Some(path) = &args.csv
+        && !touches.is_empty()
+    {
         write_csv(path, &touches)?;
     }
     let report = Report::new(&touches, failed.as_ref());
     if args.output.json {
         print_json(&report)?;
-    } else {
+    } else if !touches.is_empty() {
         print(&report.to_text())?;
     }
     match failed {
