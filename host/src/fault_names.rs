@@ -76,22 +76,6 @@ pub fn state_name(state: State) -> &'static str {
     found.map_or("unknown", |(_, name)| name)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_those_of_the_code_in_words() {
-        assert_eq!(fault_name(Fault::FollowingError), "following-error");
-        assert_eq!(fault_name(Fault::EmergencyStop), "emergency-stop");
-        assert_eq!(FAULT_NAMES.len(), Fault::ALL.len());
-        for name in FAULT_NAMES {
-            let is_plain = |letter: char| letter.is_ascii_lowercase() || letter == '-';
-            assert!(name.chars().all(is_plain), "{name}");
-        }
-    }
-}
-
 /// Names of [`ProbeEnd`]s, in the order of their numbers.
 pub const PROBE_ENDS: [&str; ProbeEnd::ALL.len()] = [
     "touched",
@@ -109,4 +93,20 @@ pub const PROBE_ENDS: [&str; ProbeEnd::ALL.len()] = [
 pub fn probe_end_name(end: ProbeEnd) -> &'static str {
     let place = ProbeEnd::ALL.iter().position(|other| *other == end);
     place.map_or("", |place| PROBE_ENDS[place])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_code_in_words() {
+        assert_eq!(fault_name(Fault::FollowingError), "following-error");
+        assert_eq!(fault_name(Fault::EmergencyStop), "emergency-stop");
+        assert_eq!(FAULT_NAMES.len(), Fault::ALL.len());
+        for name in FAULT_NAMES {
+            let is_plain = |letter: char| letter.is_ascii_lowercase() || letter == '-';
+            assert!(name.chars().all(is_plain), "{name}");
+        }
+    }
 }

@@ -43,9 +43,10 @@ pub fn run(command: &CalibrateProbeCommand) -> Result<(), CommandError> {
         } => {
             let artefacts = [Artefact::Ring, Artefact::Boss, Artefact::Sphere];
             let named = [ring, boss, sphere].into_iter().zip(artefacts);
-            let known = named.filter_map(|(diameter, artefact)| diameter.map(|mm| (artefact, mm)));
+            let mut known =
+                named.filter_map(|(diameter, artefact)| diameter.map(|mm| (artefact, mm)));
             let (artefact, diameter_mm) = known
-                .last()
+                .next_back()
                 .ok_or_else(|| CommandError::Usage("give --ring, --boss or --sphere".to_owned()))?;
             let triggers = read(file, |text| stylus::read(text, artefact))?;
             let reference = Reference {

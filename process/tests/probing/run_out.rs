@@ -64,7 +64,7 @@ proptest! {
         seed in any::<u64>(),
         x_mm in -0.1..0.1_f64,
         y_mm in -0.1..0.1_f64,
-        phase in 0.0..6.28_f64,
+        phase in 0.0..std::f64::consts::TAU,
         noise_mm in 1e-5..2e-3,
     ) {
         let mut noise = Noise::new(seed);
