@@ -14,7 +14,7 @@
 //! The axis goes towards a target at a steady feed. The board latches the timer at the probe's edge; the contact was the
 //! trigger's delay before. Where the shaft was then is found a few ticks later, when the debounce is over and there
 //! are edges after the contact as well as before it: by a quadratic through them all at their times, with the encoder's map
-//! ([`fit`]). Only then the axis stops, by a jerk-limited ramp, and goes back by the distance that was asked for. How far it goes
+//! (`fit`). Only then the axis stops, by a jerk-limited ramp, and goes back by the distance that was asked for. How far it goes
 //! on at most after a contact is known before it moves ([`Config::overtravel`]): a feed that needs more than is allowed is refused.
 //!
 //! What goes wrong is a result ([`ProbeEnd`]): a probe that touches before the axis moves, no touch on the whole way, a

@@ -6,7 +6,7 @@
 //! stands as far off when it probes as when it cut, and reads what was programmed: its own deviations cancel. So readings are
 //! corrected by the certified map before anything is computed from them, and K = −Δ of the map is a term of its own.
 //!
-//! [`World`] is the truth, by full rotations. [`gauge`] turns touches into places, [`compute`] places into terms.
+//! [`World`] is the truth, by full rotations. [`gauge`] turns touches into places, `compute` places into terms.
 
 mod compute;
 mod correct;

@@ -90,8 +90,8 @@ impl<'t> Instruction<'t> {
                 let number = self.operands.rsplit_once('#').map(|(_, number)| number);
                 number.and_then(immediate)
             }
-            // str lr, [sp, #-8]!
-            "str" if self.operands.ends_with("]!") => {
+            // str lr, [sp, #-8]!; strd r2, r3, [sp, #-8]!
+            "str" | "strd" if self.operands.ends_with("]!") => {
                 let number = self.operands.split_once("[sp, #-");
                 let number = number.and_then(|(_, number)| number.strip_suffix("]!"));
                 Some(number.and_then(immediate).unwrap_or(0))
