@@ -19,7 +19,7 @@
 //! puts them together into one pure step; [`params`] makes its configuration from physical units, by the conversions
 //! in [`units`]; [`settings`] names every value of them.
 //!
-//! Beside the path, [`homing`] finds where the axis counts from, [`identification`] what its drive does, and
+//! Beside the path, [`homing`] finds where the axis counts from, [`probe`] where a surface is, [`identification`] what its drive does, and
 //! [`tachogenerator`] checks the encoder by a second sensor. Outside the tick, [`setpoint::planner`] plans moves,
 //! [`calibration`] learns where the encoder's edges really lie, [`tuning`] finds the loop's parameters, and [`protocol`]
 //! lets a person at a laptop ask for all of it. Right behind the step, [`scope`] records what that person wants to see.
