@@ -1,4 +1,7 @@
 //! The composition: one pure step from what a board saw to what it shall put out.
+//!
+//! The step is here; `planned`, `sources`, `place`, `probing` and `experiment` are what else moves the axis or gives it its place,
+//! `request` and `reconfigure` how thread mode changes it, `views` what it can be asked.
 
 mod experiment;
 mod io;
@@ -8,21 +11,21 @@ mod probing;
 mod reconfigure;
 mod request;
 mod sources;
+mod views;
 
 pub use experiment::StartError;
 pub use io::{Inputs, Outputs};
 pub use reconfigure::ReconfigureError;
 pub use request::{Refused, Request};
 
-use crate::capture::{CaptureHealth, Unwrapper};
+use crate::capture::Unwrapper;
 use crate::compensation::Compensation;
 use crate::controller::{Controller, Demand};
 use crate::edges::EdgeReader;
 use crate::encoder_map::EncoderMap;
-use crate::encoder_map::tie::{MapHealth, MapState};
+use crate::estimator::Evidence;
 use crate::estimator::observer::Gains;
 use crate::estimator::paths::Estimators;
-use crate::estimator::{Estimator, Evidence, Variances};
 use crate::homing::Homing;
 use crate::identification::experiment::Experiment;
 use crate::output::{ActiveLimits, Output};
@@ -284,128 +287,9 @@ impl<'m> Axis<'m> {
         self.supervisor.clear()
     }
 
-    /// The supervisor: the first fault and its context, warnings, the peak of the following error.
-    #[must_use]
-    pub const fn supervisor(&self) -> &Supervisor {
-        &self.supervisor
-    }
-
-    /// The same, to report faults found between ticks and to reset warnings and peak.
-    pub const fn supervisor_mut(&mut self) -> &mut Supervisor {
-        &mut self.supervisor
-    }
-
-    /// Takes a new configuration between two ticks. The output goes on without a step, what jumps is let in by
-    /// the controller's transfer term; another estimator starts as after a long motion at the velocity
-    /// estimated last. The encoder map stays. Solves for an observer's gains, which takes longer than a tick.
-    ///
-    /// # Errors
-    /// [`ReconfigureError`] for what would move the axis while it is in motion under control; nothing is changed then.
-    pub fn reconfigure(&mut self, config: &AxisConfig) -> Result<(), ReconfigureError> {
-        self.reconfigure_with(config, &config.estimators.gains())
-    }
-
-    /// The same in the tick, with the [gains](crate::estimator::paths::Config::gains) that were solved for before.
-    ///
-    /// # Errors
-    /// As [`Self::reconfigure`].
-    pub fn reconfigure_with(
-        &mut self,
-        config: &AxisConfig,
-        gains: &Gains,
-    ) -> Result<(), ReconfigureError> {
-        if self.outputs.enabled && self.outputs.moving {
-            ReconfigureError::check(&self.config, config)?;
-        }
-        if self.sources.is_tied() && config.sources != self.config.sources {
-            return Err(ReconfigureError::Sources);
-        }
-        self.edges.reconfigure(config.edges);
-        if config.estimators != self.config.estimators {
-            let velocity = self.outputs.estimate.velocity;
-            self.estimators
-                .reconfigure(&config.estimators, gains, velocity);
-        }
-        self.controller
-            .reconfigure(config.controller, self.output.command());
-        self.output.reconfigure(config.output);
-        self.supervisor.reconfigure(config.supervisor);
-        self.sources.reconfigure(&config.limits, &config.sources);
-        self.compensation.reconfigure(config.compensation);
-        self.homing.reconfigure(config.homing);
-        self.probe.reconfigure(config.probe);
-        let is_travel_new = config.travel != self.config.travel;
-        self.config = *config;
-        if is_travel_new {
-            self.count_from(self.homing.origin());
-        }
-        Ok(())
-    }
-
     /// Takes an encoder map between two ticks, or does without. It waits for the index, even if the one before
     /// was tied.
     pub fn set_map(&mut self, map: Option<EncoderMap<'m>>) {
         self.edges.set_map(map);
-    }
-
-    /// How far the encoder map can be used; `None` without one.
-    #[must_use]
-    pub fn map_state(&self) -> Option<MapState> {
-        self.edges.map_state()
-    }
-
-    /// What the indexes showed since the map was set.
-    #[must_use]
-    pub fn map_health(&self) -> MapHealth {
-        self.edges.map_health()
-    }
-
-    /// What the last tick gave.
-    #[must_use]
-    pub const fn outputs(&self) -> &Outputs {
-        &self.outputs
-    }
-
-    /// How uncertain the estimate of the last tick is.
-    #[must_use]
-    pub fn variances(&self) -> Variances {
-        self.estimators.variances(self.edges.noise())
-    }
-
-    /// Ticks from queueing a motion from rest to its start, at least 1, that the drive needs to be ready for it: its delay,
-    /// and the dead time of a reversal. A motion that is queued later starts as well, but breaks away late.
-    #[must_use]
-    pub const fn notice_ticks(&self) -> u32 {
-        self.config.controller.notice_ticks()
-    }
-
-    /// What of the last command an observer of the nominal drive is not told: see [`Controller::withheld`].
-    #[must_use]
-    pub const fn withheld(&self) -> Command {
-        self.controller.withheld()
-    }
-
-    /// By which shares the drive asks for more of the feedforward's terms of v, a and j than they give, as learned in motion.
-    #[must_use]
-    pub fn learned(&self) -> [f64; 3] {
-        self.controller.learned()
-    }
-
-    /// The configuration in force.
-    #[must_use]
-    pub const fn config(&self) -> &AxisConfig {
-        &self.config
-    }
-
-    /// The first estimator.
-    #[must_use]
-    pub const fn estimator(&self) -> &Estimator {
-        self.estimators.first()
-    }
-
-    /// What went wrong at the encoder so far.
-    #[must_use]
-    pub const fn capture_health(&self) -> CaptureHealth {
-        self.unwrapper.health()
     }
 }

@@ -28,6 +28,7 @@ pub mod config;
 mod failure;
 mod fit;
 mod history;
+mod order;
 mod place;
 mod stages;
 mod touch;
@@ -35,6 +36,7 @@ mod trigger;
 
 pub use config::{Config, ProbeParams};
 pub use failure::{ProbeEnd, ProbeRefused};
+pub use order::ProbeOrder;
 pub use touch::{Report, Touch};
 
 use self::history::History;
@@ -45,7 +47,6 @@ use crate::edges::EdgeReader;
 use crate::estimator::Estimate;
 use crate::setpoint::Setpoint;
 use crate::setpoint::follower::Follower;
-use crate::setpoint::travel::TravelLimits;
 use crate::units::{Position, Velocity};
 
 /// What probing is at.
@@ -65,17 +66,6 @@ pub enum Stage {
     Brake = 4,
     /// Coming to rest for another reason.
     Halt = 5,
-}
-
-/// What is to be probed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProbeOrder {
-    /// How far to go for a touch, raw d.
-    pub target: Position,
-    /// Feed until the touch, d/tick; not negative.
-    pub feed: Velocity,
-    /// Way back from where the axis came to rest, d; not negative.
-    pub retract: Position,
 }
 
 /// What probing sees in a tick.
@@ -192,65 +182,6 @@ impl Probe {
     #[must_use]
     pub const fn config(&self) -> &Config {
         &self.config
-    }
-
-    /// Begins from `last`, the last setpoint commanded. Gives the farthest that the axis goes on after a contact, d.
-    ///
-    /// # Errors
-    /// [`ProbeRefused`]; nothing moves then.
-    pub fn start(
-        &mut self,
-        order: &ProbeOrder,
-        last: &Setpoint,
-        travel: Option<TravelLimits>,
-    ) -> Result<Position, ProbeRefused> {
-        let bound = self.check(order, last.position, travel)?;
-        self.order = *order;
-        self.direction = if order.target > last.position { 1 } else { -1 };
-        self.follower.take_over(last);
-        self.history.clear();
-        (self.edge, self.touch, self.is_unplaced) = (None, None, false);
-        self.stage = Stage::Approach;
-        Ok(bound)
-    }
-
-    fn check(
-        &self,
-        order: &ProbeOrder,
-        from: Position,
-        travel: Option<TravelLimits>,
-    ) -> Result<Position, ProbeRefused> {
-        let way = order.target.saturating_sub(from);
-        if way.saturating_abs() < 1 {
-            return Err(ProbeRefused::NoWay);
-        }
-        if order.feed <= 0 || order.feed > self.config.fastest || order.retract < 0 {
-            return Err(ProbeRefused::FeedOutOfRange);
-        }
-        let bound = self.config.overtravel(order.feed);
-        let whole = |way: Position| way.saturating_ceil().saturating_to_num();
-        if bound > self.config.max_overtravel {
-            return Err(ProbeRefused::Overtravel {
-                bound: whole(bound),
-                allowed: whole(self.config.max_overtravel),
-            });
-        }
-        let (farthest, back) = if way > 0 {
-            (
-                order.target.saturating_add(bound),
-                from.saturating_sub(order.retract),
-            )
-        } else {
-            (
-                order.target.saturating_sub(bound),
-                from.saturating_add(order.retract),
-            )
-        };
-        let is_within = |travel: TravelLimits| travel.contains(farthest) && travel.contains(back);
-        match travel {
-            Some(travel) if !is_within(travel) => Err(ProbeRefused::BeyondTravel),
-            _ => Ok(bound),
-        }
     }
 
     /// The axis may not go on: ends as it is.

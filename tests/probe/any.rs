@@ -4,7 +4,7 @@ use leadscrew::hal::Latch;
 use leadscrew::probe::{ProbeEnd, ProbeParams};
 use proptest::prelude::*;
 
-use crate::moments::Follower;
+use crate::follower::Follower;
 
 fn cases() -> u32 {
     if std::env::var_os("LEADSCREW_LONG").is_some() {

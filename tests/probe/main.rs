@@ -2,4 +2,6 @@
 
 mod any;
 mod figures;
+mod follower;
+mod latch;
 mod moments;

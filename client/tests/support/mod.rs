@@ -1,7 +1,6 @@
 //! An axis on its machine in this process, and lines to it.
 
-// Each test of this crate uses a part of it.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "every test file uses a part of it")]
 
 #[path = "../../../tests/protocol/rig.rs"]
 pub mod rig;

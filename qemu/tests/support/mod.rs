@@ -1,7 +1,6 @@
 //! A tool on a guest in lockstep.
 
-// Each test of this crate uses a part of it.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "every test file uses a part of it")]
 
 use std::time::Duration;
 
