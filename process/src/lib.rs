@@ -10,3 +10,4 @@ pub mod metrology;
 pub mod plan;
 pub mod probing;
 pub mod prove_out;
+pub mod setting_vector;

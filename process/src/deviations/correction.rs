@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::error::DeviationError;
 use super::machine::{Machine, Part};
-use super::setting::SettingVector;
+use crate::setting_vector::SettingVector;
 
 /// Least singular value of the directions of axes that count as independent.
 const INDEPENDENT: f64 = 1e-6;

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion};
 
 use super::error::DeviationError;
 use super::machine::{Chain, Machine};
-use super::setting::SettingVector;
+use crate::setting_vector::SettingVector;
 
 impl Machine {
     /// Where the workpiece or the tool's last unit really is, in machine axes: place · ω · rotation, unit after unit.

@@ -8,8 +8,8 @@
 use nalgebra::{DMatrix, DVector, UnitVector3, Vector3};
 
 use super::law::Table;
-use super::setting::{Component, SettingVector};
 use super::unit::Motion;
+use crate::setting_vector::{Component, SettingVector};
 
 /// An indicator.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use super::error::DeviationError;
 use super::law::Law;
-use super::setting::SettingVector;
 use super::unit::{Drive, Unit};
+use crate::setting_vector::SettingVector;
 
 /// Who corrects the drives' own positioning errors, the diagonal of P4's matrix A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

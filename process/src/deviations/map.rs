@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::error::DeviationError;
 use super::machine::{DriveErrors, Machine};
-use super::setting::SettingVector;
+use crate::setting_vector::SettingVector;
 
 /// Half of the stretch around the coordinate of an axis at rest over which a table of corrections is taken to hold, mm or degrees.
 const AT_REST: f64 = 1e-3;

@@ -16,9 +16,9 @@ mod indicators;
 mod law;
 mod machine;
 mod map;
-mod setting;
 mod unit;
 
+pub use crate::setting_vector::{Component, SettingVector, reduction};
 pub use correction::Correction;
 pub use error::DeviationError;
 pub use file::{BUILT_IN, Loaded, built_in, read};
@@ -26,5 +26,4 @@ pub use indicators::{Indicator, Measured, Readings, Stand};
 pub use law::{Function, Law, Table, Wave};
 pub use machine::{Chain, DriveErrors, Machine, Part};
 pub use map::{Extreme, Map, MapPoint};
-pub use setting::{Component, SettingVector, reduction};
 pub use unit::{Drive, Motion, Unit, direction_of};

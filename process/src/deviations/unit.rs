@@ -5,7 +5,7 @@ use nalgebra::{Rotation3, Unit as Direction, UnitVector3, Vector3};
 
 use super::error::DeviationError;
 use super::law::Law;
-use super::setting::{Component, SettingVector};
+use crate::setting_vector::{Component, SettingVector};
 
 /// How a unit moves in the axes of the unit that carries it, when its coordinate grows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,44 +1,14 @@
 //! The setting of a whole workpiece: the rigid displacement that brings planned places nearest to those found.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
 use super::adjustment::{Model, adjust};
 use super::error::MetrologyError;
 use super::fitted::{Fitted, Settings};
 use super::touch::{Touch, vector3};
+use crate::setting_vector::{Component, SettingVector};
 
-/// The components of a setting vector, in order.
-pub const COMPONENTS: [&str; 6] = ["a", "b", "c", "λ", "β", "γ"];
-
-/// A rigid displacement, the setting vector ω of P4: first turned about the origin, then moved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Displacement {
-    /// a, b, c: how far the origin is moved, mm.
-    pub shift_mm: [f64; 3],
-    /// λ, β, γ: rotation vector, rad. Its direction is the axis, its length the angle.
-    pub rotation: [f64; 3],
-}
-
-impl Displacement {
-    /// Where a place comes to lie, exactly.
-    #[must_use]
-    pub fn moved(&self, place: [f64; 3]) -> [f64; 3] {
-        (self.turn() * vector3(place) + vector3(self.shift_mm)).into()
-    }
-
-    /// How far a place is moved, mm. A tool that is to follow a workpiece set like this is moved by as much; where instead a
-    /// machine has cut a workpiece like this, its correction is the negative, K = −Δ.
-    #[must_use]
-    pub fn at(&self, place: [f64; 3]) -> [f64; 3] {
-        (vector3(self.moved(place)) - vector3(place)).into()
-    }
-
-    fn turn(&self) -> Rotation3<f64> {
-        Rotation3::new(vector3(self.rotation))
-    }
-}
-
-/// Fits the displacement of a workpiece to touches of any of its faces. `free` says which of [`COMPONENTS`] are sought; the others
+/// Fits the displacement of a workpiece to touches of any of its faces. `free` says which of [`Component::ALL`] are sought; the others
 /// are 0. The covariance is that of the free ones, in order.
 ///
 /// A touch stands for the tangent plane at its planned place: at holes that drops (deviation across)² / diameter.
@@ -49,7 +19,7 @@ pub fn fit(
     touches: &[Touch],
     free: [bool; 6],
     settings: &Settings,
-) -> Result<Fitted<Displacement>, MetrologyError> {
+) -> Result<Fitted<SettingVector>, MetrologyError> {
     let model = Setting {
         free: (0..6).filter(|&index| free[index]).collect(),
     };
@@ -65,8 +35,8 @@ pub fn fit(
         .map(|index| adjusted.sigma(index).unwrap_or_default())
         .collect();
     Ok(Fitted {
-        value: model.displacement(&adjusted.unknowns),
-        sigma: adjusted.has_sigma().then(|| model.displacement(&sigmas)),
+        value: model.vector(&adjusted.unknowns),
+        sigma: adjusted.has_sigma().then(|| model.vector(&sigmas)),
         covariance: adjusted.covariance,
         quality: adjusted.quality,
     })
@@ -78,16 +48,12 @@ struct Setting {
 }
 
 impl Setting {
-    fn displacement(&self, unknowns: &[f64]) -> Displacement {
+    fn vector(&self, unknowns: &[f64]) -> SettingVector {
         let mut all = [0.0; 6];
         for (&index, unknown) in self.free.iter().zip(unknowns) {
             all[index] = *unknown;
         }
-        let [a, b, c, lambda, beta, gamma] = all;
-        Displacement {
-            shift_mm: [a, b, c],
-            rotation: [lambda, beta, gamma],
-        }
+        SettingVector::new(all)
     }
 }
 
@@ -99,15 +65,15 @@ impl Model for Setting {
     }
 
     fn misfit(&self, touch: &Touch, unknowns: &[f64]) -> f64 {
-        let displacement = self.displacement(unknowns);
-        let normal = displacement.turn() * vector3(touch.normal);
-        let planned = displacement.moved(touch.nominal);
+        let setting = self.vector(unknowns);
+        let normal = setting.to_isometry().rotation * vector3(touch.normal);
+        let planned = setting.moved(touch.nominal);
         normal.dot(&(vector3(touch.measured) - vector3(planned)))
     }
 
     fn row(&self, touch: &Touch, unknowns: &[f64]) -> Vec<f64> {
-        let displacement = self.displacement(unknowns);
-        let normal: Vector3<f64> = displacement.turn() * vector3(touch.normal);
+        let setting = self.vector(unknowns);
+        let normal: Vector3<f64> = setting.to_isometry().rotation * vector3(touch.normal);
         // A small rotation more moves the face by ω·(r × n), r the place found.
         let lever = vector3(touch.measured).cross(&normal);
         let whole = [normal.x, normal.y, normal.z, lever.x, lever.y, lever.z];
@@ -115,7 +81,8 @@ impl Model for Setting {
     }
 
     fn why_degenerate(&self, shares: &[f64]) -> String {
-        let names: Vec<&str> = self.free.iter().map(|&index| COMPONENTS[index]).collect();
+        let letters = Component::ALL.map(Component::letter);
+        let names: Vec<&str> = self.free.iter().map(|&index| letters[index]).collect();
         let open = Self::named(&names, shares).join(", ");
         format!("they leave {open} open: free only what they see, or touch more faces")
     }

@@ -11,12 +11,12 @@ use nalgebra::{DMatrix, Vector3};
 
 use super::figures::nominal_bore;
 use super::gauge::Reading;
-use super::part::{Feature, TOOLS, tool};
-use super::world::{control_point, work_offset};
+use super::part::{Feature, TOOLS, control_point, tool, work_offset};
 use super::{Plant, ProveOutError};
 use crate::deviations::Machine;
-use crate::metrology::setting::{self, Displacement};
+use crate::metrology::setting;
 use crate::metrology::{Settings, Touch, circle};
+use crate::setting_vector::SettingVector;
 
 /// Where the program works, with room for what the part lies off, machine coordinates, mm; and the distance between the nodes of
 /// the table of corrections there.
@@ -31,7 +31,7 @@ const APART_MM: f64 = 10.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Where the part lies.
-    pub setting: Displacement,
+    pub setting: SettingVector,
     /// Covariance of the setting (a, b, c, λ, β, γ), mm and rad.
     pub setting_covariance: DMatrix<f64>,
     /// The tools by number.
@@ -55,7 +55,7 @@ pub fn setting(
     datum: &[Reading],
     certified: &Machine,
     sigma_mm: f64,
-) -> Result<(Displacement, DMatrix<f64>), ProveOutError> {
+) -> Result<(SettingVector, DMatrix<f64>), ProveOutError> {
     let touches = datum.iter().map(|one| one.touch(Some(certified), sigma_mm));
     let touches: Vec<Touch> = touches.collect::<Result<_, _>>()?;
     let fitted = setting::fit(&touches, [true; 6], &Settings::default())?;
@@ -144,8 +144,8 @@ pub fn terms(found: &Found, certified: &Machine, plant: Plant) -> Result<Terms, 
     let workpiece = Workpiece::new(
         "setting of the workpiece",
         work_offset(),
-        found.setting.shift_mm.map(|one| sign * one),
-        found.setting.rotation.map(|one| sign * one),
+        (found.setting.shift * sign).into(),
+        (found.setting.turn * sign).into(),
     );
     let sign = turned(Plant::WearSign);
     let worn = found.tools.iter().map(|(tool, beside)| {

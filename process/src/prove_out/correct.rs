@@ -8,8 +8,7 @@ use leadscrew_nc::path::Tolerance;
 use leadscrew_nc::terms::Terms;
 
 use super::ProveOutError;
-use super::part::TOOLS;
-use super::world::work_offset;
+use super::part::{TOOLS, work_offset};
 
 /// How far the written path may be from the truly corrected one, mm: below what the probe sees.
 const TOLERANCE_MM: f64 = 1e-4;

@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, RowDVector, Vector3};
 use super::ProveOutError;
 use super::gauge::planned;
 use super::part::{BORE_MM, Feature};
-use crate::metrology::setting::Displacement;
 use crate::metrology::{Axis, Nominal, Settings, Touch, circle, plane, shoulder};
+use crate::setting_vector::{Component, SettingVector};
 
 /// What a figure is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,27 +93,21 @@ pub fn nominal_bore(number: usize) -> Nominal {
 pub fn sensitivity() -> Result<DMatrix<f64>, ProveOutError> {
     // Small enough for circles to be linear, large enough for rounding.
     const STEP: f64 = 1e-5;
-    let displaced = |displacement: &Displacement| {
+    let displaced = |setting: &SettingVector| {
         let touch = |(feature, place, normal): (Feature, [f64; 3], [f64; 3])| {
-            let moved = Vector3::from(displacement.moved(place)) - Vector3::from(place);
+            let moved = Vector3::from(setting.displacement_of(place));
             let out = moved.dot(&Vector3::from(normal));
             (feature, Touch::off_by(place, normal, out).with_sigma(1.0))
         };
         let touches: Vec<_> = planned(&Feature::CUT, false).map(touch).collect();
         figures(&touches)
     };
-    let none = displaced(&Displacement::default())?;
+    let none = displaced(&SettingVector::ZERO)?;
     let mut rows = vec![RowDVector::zeros(6); none.len()];
-    for index in 0..6 {
-        let mut displacement = Displacement::default();
-        if index < 3 {
-            displacement.shift_mm[index] = STEP;
-        } else {
-            displacement.rotation[index - 3] = STEP;
-        }
-        let with = displaced(&displacement)?;
+    for component in Component::ALL {
+        let with = displaced(&SettingVector::ZERO.with(component, STEP))?;
         for (row, (one, zero)) in rows.iter_mut().zip(with.iter().zip(&none)) {
-            row[index] = (one.value - zero.value) / STEP;
+            row[component.index()] = (one.value - zero.value) / STEP;
         }
     }
     Ok(DMatrix::from_rows(&rows))

@@ -1,14 +1,14 @@
 //! Probing the part on the machine: readings, and the places they mean.
 
 use leadscrew_nc::coordinates::{Axis, Coordinates};
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use super::ProveOutError;
-use super::part::{Feature, tool};
-use super::world::{PROBE_MM, World, control_point, work_offset};
+use super::part::{Feature, control_point, tool, work_offset};
+use super::world::{PROBE_MM, World};
 use crate::deviations::Machine;
 use crate::metrology::Touch;
-use crate::metrology::setting::Displacement;
+use crate::setting_vector::SettingVector;
 
 /// How far before the surface an approach begins, mm.
 const BEFORE_MM: f64 = 3.0;
@@ -46,7 +46,7 @@ pub fn probe(
     world: &World,
     features: &[Feature],
     allowance: bool,
-    setting: &Displacement,
+    setting: &SettingVector,
     touching: &mut dyn Touching,
 ) -> Result<Vec<Reading>, ProveOutError> {
     let mut readings = Vec::new();
@@ -112,11 +112,10 @@ impl Reading {
 
 /// The same touch in the coordinates of a part that lies displaced.
 #[must_use]
-pub fn in_part(touch: &Touch, setting: &Displacement) -> Touch {
-    let turn = nalgebra::Rotation3::new(Vector3::from(setting.rotation));
-    let place = turn.inverse() * (Vector3::from(touch.measured) - Vector3::from(setting.shift_mm));
+pub fn in_part(touch: &Touch, setting: &SettingVector) -> Touch {
+    let place = setting.to_isometry().inverse() * Point3::from(touch.measured);
     Touch {
-        measured: place.into(),
+        measured: place.coords.into(),
         ..*touch
     }
 }

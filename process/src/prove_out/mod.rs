@@ -6,10 +6,13 @@
 //! stands as far off when it probes as when it cut, and reads what was programmed: its own deviations cancel. So readings are
 //! corrected by the certified map before anything is computed from them, and K = −Δ of the map is a term of its own.
 //!
-//! [`World`] is the truth, by full rotations. [`gauge`] turns touches into places, `compute` places into terms.
+//! [`World`] is the truth, by full rotations: the `part`, the `amounts` that are wrong, what was `cut`. [`gauge`] turns touches into
+//! places, `compute` places into terms, `correct` puts these into the program, [`figures`] tells what came of it.
 
+mod amounts;
 mod compute;
 mod correct;
+mod cut;
 mod draws;
 pub mod figures;
 pub mod gauge;
@@ -20,6 +23,7 @@ mod world;
 use std::collections::BTreeMap;
 use std::fmt;
 
+pub use amounts::Amounts;
 pub use compute::{Beside, Found};
 pub use draws::Draws;
 pub use gauge::Touching;
@@ -27,11 +31,11 @@ use leadscrew_nc::coordinates::Coordinates;
 use nalgebra::DMatrix;
 pub use part::{Feature, PROGRAM, TOOLS};
 pub use program::{Feed, feeds};
-pub use world::{Amounts, World};
+pub use world::World;
 
-use crate::deviations::{DeviationError, Machine, SettingVector};
-use crate::metrology::setting::Displacement;
+use crate::deviations::{DeviationError, Machine};
 use crate::metrology::{MetrologyError, Touch};
+use crate::setting_vector::SettingVector;
 use correct::corrected;
 use figures::{Figure, figures, sensitivity};
 use gauge::{Reading, in_part, planned, probe};
@@ -181,8 +185,13 @@ pub fn prove_out(
     world.cut(&feeds(PROGRAM)?, true)?;
     let true_before = true_touches(&world, true);
     let before = figures(&true_before)?;
-    let unset = Displacement::default();
-    let datum = probe(&world, &Feature::DATUM, true, &unset, touching)?;
+    let datum = probe(
+        &world,
+        &Feature::DATUM,
+        true,
+        &SettingVector::ZERO,
+        touching,
+    )?;
     let (setting, setting_covariance) = compute::setting(&datum, &certified, sigma_mm)?;
     let first = probe(&world, &Feature::CUT, true, &setting, touching)?;
     let tools = compute::tools(&first, &certified, sigma_mm)?;

@@ -1,8 +1,12 @@
 //! The part of the prove-out as it is planned: datum faces from an operation before, and what the program cuts.
 
+use leadscrew_nc::coordinates::Coordinates;
+
 /// The program that cuts it, in the coordinates of its work offset: x and y on the middle of its front, z on it.
 pub const PROGRAM: &str = include_str!("../../programs/prove_out.ngc");
 
+/// Place of the part's origin in the frame of the rotary table, mm.
+pub(super) const PLANNED_MM: [f64; 3] = [0.0, 200.0, 100.0];
 /// Radius of the end mill, mm: the program leads its centre.
 const END_MILL_MM: f64 = 10.0;
 /// Radius of the bores, mm.
@@ -147,4 +151,16 @@ impl Feature {
 #[must_use]
 pub fn tool(number: u32) -> Option<&'static Tool> {
     TOOLS.iter().find(|tool| tool.number == number)
+}
+
+/// Machine coordinates that bring the tip of a tool of this length to a place of the part as planned.
+pub(super) fn control_point(place: [f64; 3], length_mm: f64) -> Coordinates {
+    let [x, y, z] = work_offset();
+    Coordinates::xyz(place[0] + x, place[1] + y, place[2] + z + length_mm)
+}
+
+/// G54: the machine coordinates of the part's origin for a tool without length.
+pub(super) fn work_offset() -> [f64; 3] {
+    // The nose of the spindle stands 400 mm before the axis of the table with Z at 0.
+    [PLANNED_MM[0], PLANNED_MM[1], PLANNED_MM[2] - 400.0]
 }

@@ -4,16 +4,14 @@ use leadscrew_nc::coordinates::{Axis, Coordinates};
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 
 use super::ProveOutError;
+use super::amounts::{Amounts, certified};
+use super::cut::{Cut, CutPaths};
 use super::draws::Draws;
-use super::part::{BORE_MM, Feature, TOOLS, Tool, tool};
+use super::part::{Feature, PLANNED_MM, TOOLS, Tool, control_point, tool};
 use super::program::Feed;
-use crate::deviations::{
-    Chain, DeviationError, Machine, Motion, SettingVector, Table, built_in, read,
-};
+use crate::deviations::{Chain, DeviationError, Machine, Motion, SettingVector, built_in, read};
 use crate::metrology::Touch;
 
-/// Place of the part's origin in the frame of the rotary table, as planned, mm.
-const PLANNED_MM: [f64; 3] = [0.0, 200.0, 100.0];
 /// Length of the probe, mm.
 pub(super) const PROBE_MM: f64 = 150.0;
 /// Length of the pieces that the true path of a feed is taken in, mm.
@@ -22,39 +20,6 @@ const PIECE_MM: f64 = 4.0;
 const PROBING: f64 = 0.5;
 /// The probe touches where its tip is this near to the surface, mm.
 const NEAR_MM: f64 = 1e-9;
-
-/// How much is wrong, and how well the machine is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amounts {
-    /// The machine's deviations, 1 for those of its file.
-    pub machine: f64,
-    /// Largest shift of the part from where it was planned, mm.
-    pub setting_mm: f64,
-    /// Largest turn of it about each axis, rad.
-    pub setting_rad: f64,
-    /// Largest wear of a tool, mm.
-    pub wear_mm: f64,
-    /// Largest growth of spindle and column by heat while cutting, mm; while probing half of it is left.
-    pub growth_mm: f64,
-    /// 1σ of the certified deviations: shifts of a unit, mm, at each place of its table.
-    pub map_mm: f64,
-    /// The same of its turns, rad.
-    pub map_rad: f64,
-}
-
-impl Default for Amounts {
-    fn default() -> Self {
-        Self {
-            machine: 1.0,
-            setting_mm: 0.15,
-            setting_rad: 4e-4,
-            wear_mm: 0.02,
-            growth_mm: 0.012,
-            map_mm: 1e-4,
-            map_rad: 5e-7,
-        }
-    }
-}
 
 /// What is true.
 #[derive(Clone, Debug)]
@@ -65,31 +30,8 @@ pub struct World {
     /// Wear of the tools: by how much the cutting point lies back, mm.
     wear: [Vector3<f64>; 3],
     growth: Vector3<f64>,
-    /// What was cut: tool and true path in the part, feed after feed.
-    cut: Vec<(u32, Vec<Cut>)>,
-}
-
-/// Where a tool cut, in the coordinates of the part.
-#[derive(Clone, Copy, Debug)]
-struct Cut {
-    /// The cutting point.
-    point: Vector3<f64>,
-    /// The direction of the spindle: the flank of a mill lies along it, however the part is turned.
-    axis: Vector3<f64>,
-}
-
-impl Cut {
-    fn towards(&self, other: &Self, part: f64) -> Self {
-        Self {
-            point: self.point.lerp(&other.point, part),
-            axis: self.axis.lerp(&other.axis, part),
-        }
-    }
-
-    /// The place of the flank at the height `z`.
-    fn at_height(&self, z: f64) -> Vector3<f64> {
-        self.point + self.axis * ((z - self.point.z) / self.axis.z)
-    }
+    /// What was cut.
+    cut: CutPaths,
 }
 
 impl World {
@@ -131,7 +73,7 @@ impl World {
                 * setting.to_isometry(),
             wear,
             growth,
-            cut: Vec::new(),
+            cut: CutPaths::default(),
         };
         Ok((world, certified))
     }
@@ -157,7 +99,7 @@ impl World {
     /// # Errors
     /// A tool that is not there, a place beyond the ends of the machine.
     pub fn cut(&mut self, feeds: &[Feed], allowance: bool) -> Result<(), ProveOutError> {
-        let mut cut = Vec::with_capacity(feeds.len());
+        let mut cut = CutPaths::default();
         for feed in feeds {
             let tool = tool(feed.tool).ok_or(ProveOutError::Tool(feed.tool))?;
             let edge = self.edge(tool, allowance);
@@ -174,7 +116,7 @@ impl World {
                     axis: above - point,
                 })
             });
-            cut.push((feed.tool, path.collect::<Result<_, _>>()?));
+            cut.add(feed.tool, path.collect::<Result<_, _>>()?);
         }
         self.cut = cut;
         Ok(())
@@ -208,50 +150,6 @@ impl World {
         Ok(place.coords)
     }
 
-    /// How far a place of the part lies out of the material of a feature, mm, about square to its surface.
-    fn clearance(&self, feature: Feature, place: &Vector3<f64>) -> f64 {
-        match feature {
-            Feature::Front => place.z,
-            Feature::Top => place.y - 80.0,
-            Feature::Side => -100.0 - place.x,
-            Feature::Face => place.z - self.nearest(1, place, [1.0, 1.0, 0.0]).point.z,
-            Feature::Bore(_) => {
-                let centre = self.nearest(2, place, [1.0, 1.0, 1.0]);
-                BORE_MM - (place - centre.point).xy().norm()
-            }
-            Feature::Shoulder => {
-                let cut = self.nearest(3, place, [0.0, 1.0, 0.0]);
-                place.x - cut.at_height(place.z).x
-            }
-        }
-    }
-
-    /// Where a tool's true path is nearest to a place, by weights of the coordinates.
-    fn nearest(&self, tool: u32, place: &Vector3<f64>, weights: [f64; 3]) -> Cut {
-        let weights = Vector3::from(weights);
-        let nowhere = Cut {
-            point: Vector3::zeros(),
-            axis: Vector3::z(),
-        };
-        let mut found = (f64::INFINITY, nowhere);
-        let paths = self.cut.iter().filter(|(number, _)| *number == tool);
-        for pair in paths.flat_map(|(_, path)| path.windows(2)) {
-            let along = (pair[1].point - pair[0].point).component_mul(&weights);
-            let way = (place - pair[0].point).component_mul(&weights);
-            let length = along.norm_squared();
-            let part = if length == 0.0 {
-                0.0
-            } else {
-                (way.dot(&along) / length).clamp(0.0, 1.0)
-            };
-            let off = (way - along * part).norm_squared();
-            if off < found.0 {
-                found = (off, pair[0].towards(&pair[1], part));
-            }
-        }
-        found.1
-    }
-
     /// The coordinate of the axis along which the probe, its tip planned at `from`, touches a feature against `normal`: where it
     /// really does, as the machine counts.
     ///
@@ -266,7 +164,7 @@ impl World {
         let tip = Vector3::new(0.0, 0.0, -PROBE_MM) + self.growth * PROBING;
         let clear = |place: f64| -> Result<f64, ProveOutError> {
             let in_part = self.in_part(tip, &from.with(along, place))?;
-            Ok(self.clearance(feature, &in_part))
+            Ok(self.cut.clearance(feature, &in_part))
         };
         let (mut a, mut b) = (from[along], from[along] + 1e-2);
         let (mut clear_a, mut clear_b) = (clear(a)?, clear(b)?);
@@ -291,50 +189,8 @@ impl World {
         let mut place = Vector3::from(nominal);
         let out = Vector3::from(normal);
         for _ in 0..4 {
-            place -= out * self.clearance(feature, &place);
+            place -= out * self.cut.clearance(feature, &place);
         }
         Touch::at(nominal, normal, place.into())
     }
-}
-
-/// Machine coordinates that bring the tip of a tool of this length to a place of the part as planned.
-pub(super) fn control_point(place: [f64; 3], length_mm: f64) -> Coordinates {
-    let [x, y, z] = work_offset();
-    Coordinates::xyz(place[0] + x, place[1] + y, place[2] + z + length_mm)
-}
-
-/// G54: the machine coordinates of the part's origin for a tool without length.
-pub(super) fn work_offset() -> [f64; 3] {
-    // The nose of the spindle stands 400 mm before the axis of the table with Z at 0.
-    [PLANNED_MM[0], PLANNED_MM[1], PLANNED_MM[2] - 400.0]
-}
-
-/// The machine as its certificate has it: the truth and what measuring it added.
-fn certified(
-    machine: &Machine,
-    amounts: &Amounts,
-    draws: &mut Draws,
-) -> Result<Machine, ProveOutError> {
-    let mut certified = machine.clone();
-    let axes = machine.axes();
-    for unit in certified.workpiece.iter_mut().chain(&mut certified.tool) {
-        let range = unit.axis().and_then(|axis| {
-            let found = axes.iter().find(|(known, _)| *known == axis);
-            found.map(|(_, range)| *range)
-        });
-        let (Some((low, high)), false) = (range, unit.motion.is_rotary()) else {
-            continue;
-        };
-        let places: Vec<f64> = (0..=5)
-            .map(|i| low + (high - low) * f64::from(i) / 5.0)
-            .collect();
-        let noise = places.iter().map(|_| {
-            let mut of = |sigma: f64| sigma * draws.normal();
-            let [s, r] = [amounts.map_mm, amounts.map_rad];
-            SettingVector::new([of(s), of(s), of(s), of(r), of(r), of(r)])
-        });
-        let table = Table::new(places.clone(), noise.collect(), false);
-        unit.law.tables.push(table.map_err(ProveOutError::Machine)?);
-    }
-    Ok(certified)
 }

@@ -227,9 +227,7 @@ fn the_1_sigma_of_a_setting_and_of_turning_is_honest() {
     assert_honest(&touches, true, |touches| {
         let fitted = setting::fit(touches, [true; 6], &settings()).unwrap();
         let (value, sigma) = (fitted.value, fitted.sigma.unwrap());
-        let mut all = pairs(&value.shift_mm, &sigma.shift_mm);
-        all.extend(pairs(&value.rotation, &sigma.rotation));
-        all
+        pairs(&value.to_array(), &sigma.to_array())
     });
     let nominal = Nominal::straight(Axis::Z, [0.0; 3], 40.0);
     let touches = round(&nominal, &[-10.0, -40.0, -80.0], 2);

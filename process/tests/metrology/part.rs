@@ -2,8 +2,8 @@
 
 use leadscrew_process::metrology::part::report::Report;
 use leadscrew_process::metrology::part::{self, Kind, Part, evaluate, log, program, touches};
-use leadscrew_process::metrology::setting::Displacement;
 use leadscrew_process::metrology::{Axis, Settings, Touch};
+use leadscrew_process::setting_vector::SettingVector;
 
 use crate::support::{STILL, assert_near, touch_cylinder, touch_plane, v};
 
@@ -11,7 +11,7 @@ pub const HOUSING: &str = include_str!("data/housing.toml");
 pub const SHAFT: &str = include_str!("data/shaft.toml");
 
 /// Every planned touch of a displaced part, exactly; holes 20 µm too wide.
-fn touched(part: &Part, displaced: &Displacement) -> Vec<(String, String, Touch)> {
+fn touched(part: &Part, displaced: &SettingVector) -> Vec<(String, String, Touch)> {
     let mut all = Vec::new();
     for feature in &part.features {
         for planned in &feature.planned {
@@ -74,10 +74,7 @@ fn value(report: &Report, feature: &str, quantity: &str) -> f64 {
         .value
 }
 
-const DISPLACED: Displacement = Displacement {
-    shift_mm: [0.02, -0.03, 0.05],
-    rotation: [2e-4, -1e-4, 3e-4],
-};
+const DISPLACED: SettingVector = SettingVector::new([0.02, -0.03, 0.05, 2e-4, -1e-4, 3e-4]);
 
 #[test]
 fn a_table_and_a_log_say_the_same_of_a_displaced_part() {

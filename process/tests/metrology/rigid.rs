@@ -2,8 +2,9 @@
 
 use leadscrew_process::metrology::bore::Diameters;
 use leadscrew_process::metrology::relations::{self, Placed, TableTurn};
-use leadscrew_process::metrology::setting::{self, Displacement};
+use leadscrew_process::metrology::setting;
 use leadscrew_process::metrology::{Axis, Nominal, Settings, Touch, bore, circle, plane, shoulder};
+use leadscrew_process::setting_vector::SettingVector;
 use nalgebra::Rotation3;
 use proptest::prelude::*;
 
@@ -13,10 +14,13 @@ const SIZE: f64 = 200.0;
 const LARGEST_ANGLE: f64 = 2e-3;
 const LARGEST_SHIFT: f64 = 0.3;
 
-fn displacement() -> impl Strategy<Value = Displacement> {
+fn displacement() -> impl Strategy<Value = SettingVector> {
     let shift = prop::array::uniform3(-LARGEST_SHIFT..LARGEST_SHIFT);
     let rotation = prop::array::uniform3(-LARGEST_ANGLE..LARGEST_ANGLE);
-    (shift, rotation).prop_map(|(shift_mm, rotation)| Displacement { shift_mm, rotation })
+    (shift, rotation).prop_map(|(shift, turn)| SettingVector {
+        shift: v(shift),
+        turn: v(turn),
+    })
 }
 
 fn axis() -> impl Strategy<Value = Axis> {
@@ -24,16 +28,16 @@ fn axis() -> impl Strategy<Value = Axis> {
 }
 
 /// Largest rotation of a displacement, rad.
-fn angle(displaced: &Displacement) -> f64 {
-    v(displaced.rotation).norm()
+fn angle(displaced: &SettingVector) -> f64 {
+    displaced.turn.norm()
 }
 
 /// What first-order formulas drop of a length: angle² · size and angle · shift.
-fn dropped(displaced: &Displacement) -> f64 {
-    2.0 * angle(displaced) * (angle(displaced) * SIZE + v(displaced.shift_mm).norm())
+fn dropped(displaced: &SettingVector) -> f64 {
+    2.0 * angle(displaced) * (angle(displaced) * SIZE + displaced.shift.norm())
 }
 
-fn bore_of(axis: Axis, displaced: &Displacement, nominal: &Nominal) -> Vec<Touch> {
+fn bore_of(axis: Axis, displaced: &SettingVector, nominal: &Nominal) -> Vec<Touch> {
     assert_eq!(axis, nominal.axis);
     let places = [10.0, 60.0, 100.0]
         .into_iter()
@@ -58,8 +62,8 @@ proptest! {
         let touches: Vec<Touch> = face(normal, height, SIZE, 4).into_iter()
             .map(|(at, normal)| touch_plane(&displaced, at, normal)).collect();
         let fitted = plane::fit(&touches, &Settings::default()).unwrap();
-        assert_all_near(fitted.value.rotation, across(displaced.rotation, normal), 2.0 * angle(&displaced).powi(2));
-        assert_near(fitted.value.offset_mm, displaced.shift_mm[normal.index()], dropped(&displaced));
+        assert_all_near(fitted.value.rotation, across(displaced.turn.into(), normal), 2.0 * angle(&displaced).powi(2));
+        assert_near(fitted.value.offset_mm, displaced.shift[normal.index()], dropped(&displaced));
         // A plane stays a plane.
         assert_near(fitted.quality.peak_to_valley_mm(), 0.0, 1e-11);
     }
@@ -73,8 +77,8 @@ proptest! {
             touch_plane(&displaced, at, normal.unit())
         }).collect();
         let fitted = shoulder::fit(&touches, along, &Settings::default()).unwrap().value;
-        assert_near(fitted.turn, displaced.rotation[fitted.about.index()], 2.0 * angle(&displaced).powi(2));
-        assert_near(fitted.offset_mm, displaced.shift_mm[normal.index()], dropped(&displaced));
+        assert_near(fitted.turn, displaced.turn[fitted.about.index()], 2.0 * angle(&displaced).powi(2));
+        assert_near(fitted.offset_mm, displaced.shift[normal.index()], dropped(&displaced));
     }
 
     #[test]
@@ -82,7 +86,7 @@ proptest! {
         let nominal = Nominal::straight(axis, [20.0, -10.0, 30.0], 50.0);
         let touches: Vec<Touch> = around(count).map(|angle| touch_cylinder(&displaced, &nominal, (0.0, angle), true, -0.03)).collect();
         let fitted = circle::fit(&nominal, &touches, &Settings::default()).unwrap().value;
-        let moved = across(displaced.at(nominal.centre_mm), axis);
+        let moved = across(displaced.displacement_of(nominal.centre_mm), axis);
         // The section of a tilted cylinder: an ellipse, its centre moved by the tilt times the shift along the axis.
         let bound = angle(&displaced) * (LARGEST_SHIFT * 2.0 + angle(&displaced) * SIZE);
         assert_all_near(fitted.centre_mm, moved, bound);
@@ -94,15 +98,15 @@ proptest! {
         let nominal = Nominal::straight(axis, [20.0, -10.0, 30.0], 50.0);
         let touches = bore_of(axis, &displaced, &nominal);
         let fitted = bore::fit(&nominal, &touches, Diameters::Cylinder, &Settings::default()).unwrap();
-        assert_all_near(fitted.value.rotation, across(displaced.rotation, axis), 2.0 * angle(&displaced).powi(2));
-        assert_all_near(fitted.value.offset_mm, across(displaced.at(nominal.centre_mm), axis), dropped(&displaced));
+        assert_all_near(fitted.value.rotation, across(displaced.turn.into(), axis), 2.0 * angle(&displaced).powi(2));
+        assert_all_near(fitted.value.offset_mm, across(displaced.displacement_of(nominal.centre_mm), axis), dropped(&displaced));
         assert_near(fitted.value.sections[0][1], 0.04, 1e-10);
         assert_near(fitted.quality.peak_to_valley_mm(), 0.0, 1e-10);
     }
 
     #[test]
     fn a_rigid_rotation_of_a_perfect_part_turns_all_features_alike(rotation in prop::array::uniform3(-1e-3..1e-3), axis in axis()) {
-        let displaced = Displacement { shift_mm: [0.0; 3], rotation };
+        let displaced = SettingVector { turn: v(rotation), ..SettingVector::ZERO };
         let second_order = 4.0 * angle(&displaced).powi(2);
         let nominal = Nominal::straight(axis, [0.0; 3], 50.0);
         let bore = bore::fit(&nominal, &bore_of(axis, &displaced, &nominal).iter().map(|touch| touch.with_sigma(1e-3)).collect::<Vec<_>>(),
@@ -128,7 +132,7 @@ proptest! {
     ) {
         // Holes along an axis that the table's is square to; the second one off by `offset`.
         let axis = if other { about.next() } else { about.next().next() };
-        let small = Displacement { shift_mm: displaced.shift_mm, rotation: displaced.rotation.map(|angle| angle * 0.1) };
+        let small = SettingVector { turn: displaced.turn * 0.1, ..displaced };
         let mut far = [20.0, -10.0, 30.0];
         far[axis.index()] += 150.0;
         let first = Nominal::straight(axis, [20.0, -10.0, 30.0], 50.0);
@@ -141,7 +145,7 @@ proptest! {
         let true_pivot = v(turn.pivot_mm) + v(pivot);
         let true_centre = v(small.moved(far)) + v(across(offset, axis));
         let seen_centre = half * (true_centre - true_pivot) + true_pivot;
-        let seen = Displacement { shift_mm: across((seen_centre - v(after.centre_mm)).into(), axis), rotation: [0.0; 3] };
+        let seen = SettingVector { shift: v(across((seen_centre - v(after.centre_mm)).into(), axis)), ..SettingVector::ZERO };
         let seen_touches: Vec<Touch> = around(4).map(|angle| touch_cylinder(&seen, &after, (0.0, angle), true, 0.0)).collect();
         let settings = Settings::default();
         let (near, far_circle) = (circle::fit(&first, &near, &settings).unwrap(), circle::fit(&after, &seen_touches, &settings).unwrap());
@@ -152,7 +156,7 @@ proptest! {
         assert_all_near(coaxial.offset_mm, across(expected.into(), axis), bound);
         assert_near(coaxial.eccentricity_mm, v(across(expected.into(), axis)).norm(), 2.0 * bound);
         let turned_by_offset = v(axis.unit()).cross(&(v(across(offset, axis)) / 150.0));
-        let rotation = v(across(small.rotation, axis)) + turned_by_offset;
+        let rotation = v(across(small.turn.into(), axis)) + turned_by_offset;
         assert_all_near(coaxial.rotation, rotation.into(), bound / 50.0);
     }
 
@@ -161,8 +165,8 @@ proptest! {
         let touches: Vec<Touch> = Axis::ALL.into_iter().flat_map(|normal| face(normal, 20.0, SIZE, 3))
             .map(|(at, normal)| touch_plane(&displaced, at, normal)).collect();
         let fitted = setting::fit(&touches, [true; 6], &Settings::default()).unwrap();
-        assert_all_near(fitted.value.shift_mm, displaced.shift_mm, 1e-10);
-        assert_all_near(fitted.value.rotation, displaced.rotation, 1e-12);
+        assert_all_near(fitted.value.shift.into(), displaced.shift.into(), 1e-10);
+        assert_all_near(fitted.value.turn.into(), displaced.turn.into(), 1e-12);
         assert_near(fitted.quality.peak_to_valley_mm(), 0.0, 1e-10);
     }
 

@@ -1,7 +1,7 @@
 //! Parts to touch.
 
-use leadscrew_process::metrology::setting::Displacement;
 use leadscrew_process::metrology::{Axis, Nominal, Touch};
+use leadscrew_process::setting_vector::SettingVector;
 use nalgebra::{Rotation3, Vector3};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -31,8 +31,8 @@ pub fn v(vector: [f64; 3]) -> Vector3<f64> {
 }
 
 /// Where the probe, coming along its line through the planned place, finds a plane face of a displaced part. Exact.
-pub fn touch_plane(displaced: &Displacement, nominal: [f64; 3], normal: [f64; 3]) -> Touch {
-    let turned = Rotation3::new(v(displaced.rotation)) * v(normal);
+pub fn touch_plane(displaced: &SettingVector, nominal: [f64; 3], normal: [f64; 3]) -> Touch {
+    let turned = Rotation3::new(displaced.turn) * v(normal);
     let place = v(displaced.moved(nominal));
     let along = turned.dot(&(place - v(nominal))) / turned.dot(&v(normal));
     Touch::off_by(nominal, normal, along)
@@ -41,7 +41,7 @@ pub fn touch_plane(displaced: &Displacement, nominal: [f64; 3], normal: [f64; 3]
 /// Where the probe finds a cylinder of a displaced part of which the radius is off, coming square to the planned axis at
 /// `angle` at a height. Exact: the line meets the displaced cylinder.
 pub fn touch_cylinder(
-    displaced: &Displacement,
+    displaced: &SettingVector,
     nominal: &Nominal,
     (height, angle): (f64, f64),
     is_hole: bool,
@@ -52,7 +52,7 @@ pub fn touch_cylinder(
     let radius = nominal.diameter_mm / 2.0 + nominal.taper / 2.0 * height;
     let centre = v(nominal.centre_mm) + v(nominal.axis.unit()) * height;
     let planned = centre + outward * radius;
-    let axis = Rotation3::new(v(displaced.rotation)) * v(nominal.axis.unit());
+    let axis = Rotation3::new(displaced.turn) * v(nominal.axis.unit());
     let origin = v(displaced.moved(nominal.centre_mm));
     // |(p + t·u) − origin| square to the axis equals the radius.
     let across = |vector: Vector3<f64>| vector - axis * axis.dot(&vector);
@@ -75,10 +75,7 @@ pub fn around(count: usize) -> impl Iterator<Item = f64> + Clone {
 }
 
 /// No displacement.
-pub const STILL: Displacement = Displacement {
-    shift_mm: [0.0; 3],
-    rotation: [0.0; 3],
-};
+pub const STILL: SettingVector = SettingVector::ZERO;
 
 /// A square face, touched on a grid.
 pub fn face(normal: Axis, height: f64, size: f64, grid: usize) -> Vec<([f64; 3], [f64; 3])> {

@@ -57,8 +57,6 @@ struct Tool {
 
 impl Report {
     pub fn new(seed: u64, probe_um: f64, out: &ProveOut) -> Self {
-        let found = &out.found.setting;
-        let (shift, turn) = (found.shift_mm, found.rotation);
         let tool = |(tool, truth): (&u32, &[f64; 3])| Tool {
             tool: *tool,
             found_mm: out
@@ -75,7 +73,7 @@ impl Report {
             touches: out.touches,
             figures: out.rows.iter().map(FigureRow::of).collect(),
             setting: Setting {
-                found: [shift[0], shift[1], shift[2], turn[0], turn[1], turn[2]],
+                found: out.found.setting.to_array(),
                 truth: out.setting_seen.to_array(),
             },
             tools: out.tools_seen.iter().map(tool).collect(),

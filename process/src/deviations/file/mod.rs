@@ -1,6 +1,10 @@
-//! Machines as TOML files.
+//! Machines as TOML files: a [`unit`] is read with what it deviates by, a [`table`], a [`function`] or [`indicators`], whose numbers
+//! are [`quantity`]s.
 
-mod deviations;
+mod function;
+mod indicators;
+mod quantity;
+mod table;
 mod unit;
 
 use leadscrew_nc::source::{Complaint, read_toml};

@@ -11,8 +11,10 @@ use super::super::indicators::Measured;
 use super::super::law::Law;
 use super::super::machine::Chain;
 use super::super::unit::{Drive, Motion, Unit, direction_of};
-use super::deviations::{FunctionFile, IndicatorsFile, TableFile};
+use super::function::FunctionFile;
+use super::indicators::IndicatorsFile;
 use super::place;
+use super::table::TableFile;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

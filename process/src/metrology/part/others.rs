@@ -8,6 +8,7 @@ use super::kinds::{COORDINATE, checked, numbers, places};
 use super::{Blank, PassesPlan, ToolPlan};
 use crate::metrology::Axis;
 use crate::metrology::relations::TableTurn;
+use crate::setting_vector::Component;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -127,17 +128,6 @@ pub(super) struct SettingFile {
     free: Option<Vec<Component>>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Component {
-    A,
-    B,
-    C,
-    Lambda,
-    Beta,
-    Gamma,
-}
-
 impl SettingFile {
     pub fn free(&self) -> [bool; 6] {
         let Some(free) = &self.free else {
@@ -145,7 +135,7 @@ impl SettingFile {
         };
         let mut all = [false; 6];
         for component in free {
-            all[*component as usize] = true;
+            all[component.index()] = true;
         }
         all
     }

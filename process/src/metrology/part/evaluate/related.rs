@@ -5,6 +5,7 @@ use crate::metrology::part::report::FeatureReport;
 use crate::metrology::part::{Feature, Kind};
 use crate::metrology::relations::{self, Placed};
 use crate::metrology::{Axis, MetrologyError, Touch, setting};
+use crate::setting_vector::Component;
 
 impl Evaluation<'_> {
     fn placed(&self, index: usize) -> Option<Placed<'_>> {
@@ -123,20 +124,14 @@ impl Evaluation<'_> {
             (format!("{name}/{point}"), touch.along_normal_mm())
         });
         report.describe(&fitted.quality, points);
-        let sigma = fitted.sigma;
-        for axis in Axis::ALL.into_iter().filter(|axis| free[axis.index()]) {
-            let index = axis.index();
-            let name = setting::COMPONENTS[index];
-            let sigma = sigma.map(|sigma| sigma.shift_mm[index]);
-            report.push(name, "mm", fitted.value.shift_mm[index], sigma);
+        for component in Component::ALL {
+            if free[component.index()] {
+                let unit = if component.is_turn() { "rad" } else { "mm" };
+                let sigma = fitted.sigma.map(|sigma| sigma.get(component));
+                let value = fitted.value.get(component);
+                report.push(component.letter(), unit, value, sigma);
+            }
         }
-        let turns = |axis: Axis| free[3 + axis.index()];
-        push_rotations(
-            &mut report,
-            fitted.value.rotation,
-            sigma.map(|sigma| sigma.rotation),
-            turns,
-        );
         Ok(report)
     }
 }

@@ -1,9 +1,6 @@
-//! A setting vector as it follows the coordinate: tables, linear between their places, and functions, added up.
+//! A setting vector given at places of the coordinate, linear between them.
 
-use std::f64::consts::TAU;
-use std::ops::Add;
-
-use super::setting::{Component, SettingVector};
+use crate::setting_vector::SettingVector;
 
 /// A setting vector given at places, linear between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +86,7 @@ impl Table {
     }
 
     /// The vector at a place; beyond the ends that of the end.
-    fn at(&self, place: f64) -> SettingVector {
+    pub(super) fn at(&self, place: f64) -> SettingVector {
         let first = self.places[0];
         let place = if self.full_turn {
             first + (place - first).rem_euclid(360.0)
@@ -104,148 +101,24 @@ impl Table {
     }
 
     /// Mean over its places.
-    fn mean(&self) -> SettingVector {
+    pub(super) fn mean(&self) -> SettingVector {
         let mut sum = SettingVector::ZERO;
         for (places, values) in self.places.windows(2).zip(self.values.windows(2)) {
             sum += (values[0] + values[1]) * (0.5 * (places[1] - places[0]));
         }
         sum * (1.0 / (self.places[self.places.len() - 1] - self.places[0]))
     }
-}
 
-/// A sine over the coordinate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wave {
-    /// mm or rad.
-    pub amplitude: f64,
-    /// mm, or degrees for a rotary unit: there a whole part of 360.
-    pub period: f64,
-    /// Degrees of the wave at the coordinate 0.
-    pub phase_deg: f64,
-}
-
-/// One parameter as a function of the coordinate: constant, slope and waves.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Function {
-    /// The parameter.
-    pub component: Component,
-    /// At the coordinate 0, waves apart; mm or rad.
-    pub constant: f64,
-    /// mm or rad for each mm of the coordinate; 0 for a rotary unit.
-    pub slope: f64,
-    /// Waves.
-    pub waves: Vec<Wave>,
-}
-
-impl Function {
-    fn at(&self, place: f64) -> f64 {
-        let wave = |wave: &Wave| {
-            wave.amplitude * (TAU * place / wave.period + wave.phase_deg.to_radians()).sin()
-        };
-        self.constant + self.slope * place + self.waves.iter().map(wave).sum::<f64>()
-    }
-}
-
-/// How the setting vector of a unit follows its coordinate.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Law {
-    /// Tables.
-    pub tables: Vec<Table>,
-    /// Functions.
-    pub functions: Vec<Function>,
-}
-
-impl Law {
-    /// A unit without deviations.
-    pub const NONE: Self = Self {
-        tables: Vec::new(),
-        functions: Vec::new(),
-    };
-
-    /// The law of one table.
-    #[must_use]
-    pub fn table(table: Table) -> Self {
-        Self {
-            tables: vec![table],
-            functions: Vec::new(),
-        }
-    }
-
-    /// The setting vector at a place, mm or degrees; beyond the end of a table that of its end.
-    #[must_use]
-    pub fn at(&self, place: f64) -> SettingVector {
-        let tables = self.tables.iter().map(|table| table.at(place));
-        let functions = self
-            .functions
-            .iter()
-            .map(|one| SettingVector::ZERO.with(one.component, one.at(place)));
-        tables.chain(functions).fold(SettingVector::ZERO, Add::add)
-    }
-
-    /// Its mean over a revolution, for a rotary unit: waves of whole parts of a turn leave nothing.
-    #[must_use]
-    pub fn mean(&self) -> SettingVector {
-        let tables = self.tables.iter().map(Table::mean);
-        let functions = self
-            .functions
-            .iter()
-            .map(|one| SettingVector::ZERO.with(one.component, one.constant));
-        tables.chain(functions).fold(SettingVector::ZERO, Add::add)
-    }
-
-    /// The stretch over which all its tables are known.
-    #[must_use]
-    pub fn range(&self) -> (f64, f64) {
-        self.tables
-            .iter()
-            .map(Table::range)
-            .fold((f64::NEG_INFINITY, f64::INFINITY), |all, one| {
-                (all.0.max(one.0), all.1.min(one.1))
-            })
-    }
-
-    /// The law with all vectors multiplied.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        let mut law = self.clone();
-        for value in law.tables.iter_mut().flat_map(|table| &mut table.values) {
-            *value = *value * factor;
-        }
-        for function in &mut law.functions {
-            function.constant *= factor;
-            function.slope *= factor;
-            for wave in &mut function.waves {
-                wave.amplitude *= factor;
-            }
-        }
-        law
-    }
-
-    /// The law without one parameter.
-    #[must_use]
-    pub fn without(&self, component: Component) -> Self {
-        let mut law = self.clone();
-        for value in law.tables.iter_mut().flat_map(|table| &mut table.values) {
-            *value = value.with(component, 0.0);
-        }
-        law.functions.retain(|one| one.component != component);
-        law
-    }
-
-    /// True where a parameter is other than 0 somewhere.
-    #[must_use]
-    pub fn has(&self, component: Component) -> bool {
-        let tables = self.tables.iter().flat_map(|table| &table.values);
-        tables
-            .map(|value| value.get(component))
-            .any(|value| value != 0.0)
-            || self.functions.iter().any(|one| one.component == component)
+    /// Its vectors, to be changed one by one.
+    pub(super) fn values_mut(&mut self) -> impl Iterator<Item = &mut SettingVector> {
+        self.values.iter_mut()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting_vector::Component;
 
     fn b_of(values: &[f64]) -> Vec<SettingVector> {
         let vector = |&b: &f64| SettingVector::ZERO.with(Component::B, b);
@@ -284,27 +157,5 @@ mod tests {
         assert!(new(&[0.0, 400.0], true).contains("full turn"));
         let open = Table::new(vec![0.0, 360.0], b_of(&[0.0, 1.0]), true).unwrap_err();
         assert!(open.contains("values differ"), "{open}");
-    }
-
-    #[test]
-    fn the_mean_of_a_revolution_keeps_the_constant_only() {
-        let wave = Wave {
-            amplitude: 2.0,
-            period: 120.0,
-            phase_deg: 30.0,
-        };
-        let law = Law {
-            functions: vec![Function {
-                component: Component::C,
-                constant: 0.5,
-                slope: 0.0,
-                waves: vec![wave],
-            }],
-            ..Law::NONE
-        };
-        let sum: f64 = (0..360).map(|deg| law.at(f64::from(deg)).shift.z).sum();
-        assert!((sum / 360.0 - law.mean().shift.z).abs() < 1e-12);
-        assert_eq!(law.at(0.0).shift.z, 0.5 + 2.0 * 30f64.to_radians().sin());
-        assert!(law.has(Component::C) && !law.without(Component::C).has(Component::C));
     }
 }

@@ -1,12 +1,15 @@
-//! The setting vector ω = (a, b, c, λ, β, γ) of a unit, and its reduction to another place.
+//! The setting vector ω = (a, b, c, λ, β, γ) of P4: how a unit of a machine or a whole workpiece lies beside where it should, and its
+//! reduction to another place.
 
 use std::fmt;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
-use nalgebra::{Isometry3, Matrix6, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix6, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use serde::Deserialize;
 
 /// One of the six parameters of a setting vector.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Component {
     /// Shift along x.
     A,
@@ -64,7 +67,8 @@ impl fmt::Display for Component {
     }
 }
 
-/// By how much a unit is displaced at its reference frame: a small shift and a small right-handed turn.
+/// By how much a unit or a workpiece is displaced at its reference frame: a small shift and a small right-handed turn. Taken exactly it
+/// is a rigid displacement: first turned about the origin of the frame, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SettingVector {
     /// (a, b, c), mm.
@@ -74,7 +78,7 @@ pub struct SettingVector {
 }
 
 impl SettingVector {
-    /// A unit where it should be.
+    /// Where it should be.
     pub const ZERO: Self = Self {
         shift: Vector3::new(0.0, 0.0, 0.0),
         turn: Vector3::new(0.0, 0.0, 0.0),
@@ -126,6 +130,19 @@ impl SettingVector {
             shift: rotation * self.shift,
             turn: rotation * self.turn,
         }
+    }
+
+    /// Where a place of the frame comes to lie, mm, exactly.
+    #[must_use]
+    pub fn moved(&self, place: [f64; 3]) -> [f64; 3] {
+        (self.to_isometry() * Point3::from(place)).coords.into()
+    }
+
+    /// How far a place is moved, mm, exactly. A tool that is to follow a workpiece set like this is moved by as much; where instead
+    /// a machine has cut a workpiece like this, its correction is the negative, K = −Δ.
+    #[must_use]
+    pub fn displacement_of(&self, place: [f64; 3]) -> [f64; 3] {
+        (Vector3::from(self.moved(place)) - Vector3::from(place)).into()
     }
 
     /// The displacement as a motion with a full rotation.
