@@ -19,8 +19,8 @@ pub struct Circle {
     pub seen: [bool; 3],
     /// Deviation of the diameter, mm.
     pub diameter_mm: f64,
-    /// Largest less smallest diameter, mm; none without two diameters. Of the measured diameters, or with six touches and
-    /// more of the ellipse that fits best.
+    /// Largest less smallest diameter, mm; none without diameters in two directions. Of the measured diameters, the mean in each
+    /// direction, or with touches in six directions and more of the ellipse that fits best.
     pub ovality_mm: Option<f64>,
     /// Greatest less least residual from the circle, mm; none without redundancy. It holds the noise of the touches too.
     pub form_mm: Option<f64>,
@@ -112,15 +112,18 @@ pub fn diameters(nominal: &Nominal, touches: &[Touch]) -> Result<Vec<Diameter>, 
     Ok(opposite_pairs(nominal, touches))
 }
 
+/// Each touch with the first one opposite to it that has no partner yet: repeated touches make a diameter each.
 fn opposite_pairs(nominal: &Nominal, touches: &[Touch]) -> Vec<Diameter> {
-    let mut pairs = Vec::new();
+    let mut pairs: Vec<Diameter> = Vec::new();
     for (index, touch) in touches.iter().enumerate() {
         let outward = nominal.outward(touch);
-        let is_opposite = |(_, other): &(usize, &Touch)| {
-            let other = nominal.outward(other);
-            outward.dot(&other) < 0.0 && outward.perp(&other).abs() < OPPOSITE
+        let is_free = |other: usize| pairs.iter().all(|pair| !pair.touches.contains(&other));
+        let is_opposite = |(other, opposite): &(usize, &Touch)| {
+            let across = nominal.outward(opposite);
+            outward.dot(&across) < 0.0 && outward.perp(&across).abs() < OPPOSITE && is_free(*other)
         };
-        let opposite = touches.iter().enumerate().skip(index + 1).find(is_opposite);
+        let mut later = touches.iter().enumerate().skip(index + 1);
+        let opposite = later.find(is_opposite).filter(|_| is_free(index));
         if let Some((other, opposite)) = opposite {
             pairs.push(Diameter {
                 touches: [index, other],
@@ -140,21 +143,41 @@ fn ovality(
     elliptic(nominal, touches, settings).or_else(|| of_diameters(nominal, touches))
 }
 
-/// Of the largest and the smallest measured diameter.
+/// Of the largest and the smallest diameter by direction, each the mean of those measured there.
 fn of_diameters(nominal: &Nominal, touches: &[Touch]) -> Option<(f64, Option<f64>)> {
     let pairs = opposite_pairs(nominal, touches);
-    let by_size = |a: &&Diameter, b: &&Diameter| a.deviation_mm.total_cmp(&b.deviation_mm);
-    let (largest, smallest) = (pairs.iter().max_by(by_size)?, pairs.iter().min_by(by_size)?);
-    if pairs.len() < 2 {
+    let along = |pair: &Diameter| nominal.outward(&touches[pair.touches[0]]);
+    let mut directions: Vec<Vec<Diameter>> = Vec::new();
+    for pair in pairs {
+        let is_same = |same: &&mut Vec<Diameter>| {
+            let parallel = |other| along(&pair).perp(&along(other)).abs() < OPPOSITE;
+            same.first().is_some_and(parallel)
+        };
+        match directions.iter_mut().find(is_same) {
+            Some(same) => same.push(pair),
+            None => directions.push(vec![pair]),
+        }
+    }
+    if directions.len() < 2 {
         return None;
     }
-    let ends = largest.touches.iter().chain(&smallest.touches);
-    let variance: Option<f64> = ends
-        .map(|&index| Some(touches[index].sigma_mm?.powi(2)))
-        .sum();
+    let mean = |same: &Vec<Diameter>| {
+        same.iter().map(|pair| pair.deviation_mm).sum::<f64>() / same.len() as f64
+    };
+    let by_size = |a: &&Vec<Diameter>, b: &&Vec<Diameter>| mean(a).total_cmp(&mean(b));
+    let largest = directions.iter().max_by(by_size)?;
+    let smallest = directions.iter().min_by(by_size)?;
+    let variance = |same: &Vec<Diameter>| -> Option<f64> {
+        let ends = same.iter().flat_map(|pair| pair.touches);
+        let sum: Option<f64> = ends
+            .map(|index| Some(touches[index].sigma_mm?.powi(2)))
+            .sum();
+        Some(sum? / (same.len() * same.len()) as f64)
+    };
+    let variance = variance(largest).zip(variance(smallest));
     Some((
-        largest.deviation_mm - smallest.deviation_mm,
-        variance.map(f64::sqrt),
+        mean(largest) - mean(smallest),
+        variance.map(|(one, other)| (one + other).sqrt()),
     ))
 }
 

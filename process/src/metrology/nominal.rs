@@ -50,9 +50,14 @@ impl Nominal {
         self.offset(touch.nominal).normalize()
     }
 
+    /// The planned radius at the height of a place, mm.
+    pub(super) fn radius_at(&self, place: [f64; 3]) -> f64 {
+        (self.diameter_mm + self.taper * self.height(place)) / 2.0
+    }
+
     /// Deviation of the radius at a touch, mm, seen from the planned axis along the planned direction.
     pub(super) fn radial_deviation(&self, touch: &Touch) -> f64 {
-        let radius = self.diameter_mm / 2.0 + self.taper / 2.0 * self.height(touch.nominal);
-        self.offset(touch.measured).dot(&self.outward(touch)) - radius
+        let across = self.offset(touch.measured).dot(&self.outward(touch));
+        across - self.radius_at(touch.nominal)
     }
 }

@@ -78,6 +78,35 @@ fn a_hole_by_hand() {
 }
 
 #[test]
+fn repeated_touches_are_no_ovality() {
+    // Every wall is met twice, 3 µm apart: both means of two diameters are the same, and so are those along x with 4 µm more.
+    let nominal = Nominal::straight(Axis::Y, [0.0; 3], 40.0);
+    let twice = |along_x: f64| -> Vec<Touch> {
+        let once = hole(&nominal, [0.003, 0.0, along_x, 0.0]);
+        let again = hole(&nominal, [0.0, 0.0, along_x + 0.003, 0.0]);
+        let touches = once.into_iter().chain(again);
+        touches.map(|touch| touch.with_sigma(0.002)).collect()
+    };
+    let fit = |along_x| circle::fit(&nominal, &twice(along_x), &settings()).unwrap();
+    assert_near(fit(0.0).value.ovality_mm.unwrap(), 0.0, 1e-14);
+    let oval = fit(0.004);
+    assert_near(oval.value.ovality_mm.unwrap(), 0.004, 1e-14);
+    // A mean of two diameters of two touches each has the variance of one touch.
+    let sigma = oval.sigma.unwrap().ovality_mm.unwrap();
+    assert_near(sigma, 2_f64.sqrt() * 0.002, 1e-14);
+    let pairs = circle::diameters(&nominal, &twice(0.0)).unwrap();
+    let pairs: Vec<[usize; 2]> = pairs.iter().map(|pair| pair.touches).collect();
+    assert_eq!(pairs, [[0, 1], [2, 3], [4, 5], [6, 7]]);
+    // One direction alone, met twice, has two diameters and no ovality.
+    let along_z: Vec<Touch> = twice(0.0)
+        .into_iter()
+        .filter(|touch| touch.normal[2] != 0.0)
+        .collect();
+    let fitted = circle::fit(&nominal, &along_z, &settings()).unwrap();
+    assert_eq!(fitted.value.ovality_mm, None);
+}
+
+#[test]
 fn coaxiality_by_hand() {
     // Holes at y = 0 and y = −120 (the far side), hole II measured after a turn about z around (0, −60).
     let first = Nominal::straight(Axis::Y, [30.0, 0.0, 5.0], 40.0);

@@ -307,3 +307,25 @@ fn a_program_that_cannot_be_is_refused() {
         &["nothing to touch"],
     );
 }
+
+/// Where a conical hole is narrow a touch begins on its axis at the farthest: beyond it the stylus would meet the other wall.
+#[test]
+fn a_touch_begins_within_a_hole_that_narrows() {
+    let cone = "[probe]\nradius_mm = 1\n[program]\nsafe_mm = 10\napproach_mm = 50\n[[axis]]\nname = \"cone\"\naxis = \"z\"\n\
+                inside = true\ncentre_mm = [0, 0, 0]\ndiameter_mm = 20\ntaper = 0.25\nsections_mm = [0, -40]\nangles_deg = [0]\n";
+    let program = program::write(cone, &part::read(cone).unwrap()).unwrap();
+    let starts: Vec<&str> = program
+        .lines()
+        .filter(|line| line.starts_with("G1 X"))
+        .collect();
+    assert_eq!(starts.len(), 4, "{program}");
+    assert!(
+        starts.iter().all(|line| line.starts_with("G1 X0.0000")),
+        "{starts:?}"
+    );
+    let deep = cone.replace("radius_mm = 1\n", "radius_mm = 6\n");
+    refused(
+        program::write(&deep, &part::read(&deep).unwrap()),
+        &["cone: the stylus, radius 6 mm", "at point 2"],
+    );
+}

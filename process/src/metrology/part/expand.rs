@@ -28,8 +28,7 @@ pub(super) fn around(
     for &place in places {
         let mut centre = vector3(nominal.centre_mm);
         centre[along] = place;
-        let height = place - nominal.centre_mm[along];
-        let radius = (nominal.diameter_mm + nominal.taper * height) / 2.0;
+        let radius = nominal.radius_at(centre.into());
         for angle in angles_deg {
             let (sine, cosine) = sine_cosine(*angle);
             let outward = first * cosine + second * sine;

@@ -75,7 +75,7 @@ impl Writer<'_> {
         }
         self.line(&format!("({})", ascii(&feature.name)));
         for planned in &feature.planned {
-            let room = self.room(text, feature)?;
+            let room = self.room(text, feature, planned)?;
             self.touch(planned, room).map_err(|message| {
                 feature.complain(text, format!("point {}: {message}", planned.point))
             })?;
@@ -84,7 +84,7 @@ impl Writer<'_> {
     }
 
     /// How far a touch may begin from the surface, mm.
-    fn room(&self, text: &str, feature: &Feature) -> Result<f64, Complaint> {
+    fn room(&self, text: &str, feature: &Feature, planned: &Planned) -> Result<f64, Complaint> {
         let plan = &self.part.program;
         let (nominal, inside) = match feature.kind {
             Kind::Circle { nominal, inside }
@@ -105,11 +105,12 @@ impl Writer<'_> {
             );
             return Err(feature.complain(text, message));
         }
-        let room = nominal.diameter_mm / 2.0 - self.part.probe.radius_mm;
+        // A hole may narrow: by its radius where it is touched.
+        let room = nominal.radius_at(planned.nominal) - self.part.probe.radius_mm;
         if room <= 0.0 {
             let message = format!(
-                "the stylus, radius {} mm, does not go into it",
-                self.part.probe.radius_mm
+                "the stylus, radius {} mm, does not go into it at point {}",
+                self.part.probe.radius_mm, planned.point
             );
             return Err(feature.complain(text, message));
         }
