@@ -156,6 +156,11 @@ fn what_is_wrong_in_a_file_is_said_where() {
             "are known from 0 to 359 deg",
         ),
         (
+            "[[tool.function]]\nof = \"lambda\"\nconstant_arcsec = 1.2",
+            "[[tool.table]]\nat_deg = [0.0, 90.0]\nlambda_urad = [0.0, 3.0]",
+            "known from 0 to 90 °, and it turns freely",
+        ),
+        (
             "tool_mm = [0.0, 0.0, -150.0]",
             "tool_mm = [0.0, 0.0, nan]",
             "must be from",

@@ -50,21 +50,8 @@ impl UnitFile {
                 .map_err(|message| Complaint::at(text, span, message))?;
         }
         let (law, measured) = self.law(text, &motion)?;
-        if let Drive::Placed { range, axis } = drive {
-            let (low, high) = law.range();
-            if low > range.0 || high < range.1 {
-                let unit = axis.unit();
-                return Err(Complaint::at(
-                    text,
-                    span,
-                    format!(
-                        "the tables of unit \"{}\" are known from {low} to {high} {unit}, and it moves from {} to {} {unit}: \
-                         measure the rest or state a narrower range",
-                        self.name, range.0, range.1
-                    ),
-                ));
-            }
-        }
+        check_tables(&self.name, drive, &law)
+            .map_err(|message| Complaint::at(text, span, message))?;
         let primary = matches!(drive.axis(), Some(Axis::X | Axis::Y | Axis::Z));
         let unit = Unit {
             frame_mm: place(text, "frame_mm", &self.frame_mm)?,
@@ -181,6 +168,26 @@ impl Drive {
             Self::Placed { axis, .. } => Some(axis),
             Self::Free { axis } => axis,
         }
+    }
+}
+
+/// Tables cover what the unit moves over: its range, or a whole revolution.
+fn check_tables(name: &str, drive: Drive, law: &Law) -> Result<(), String> {
+    let (low, high) = law.range();
+    match drive {
+        Drive::Placed { range, axis } if low > range.0 || high < range.1 => {
+            let unit = axis.unit();
+            Err(format!(
+                "the tables of unit \"{name}\" are known from {low} to {high} {unit}, and it moves from {} to {} {unit}: measure \
+                 the rest or state a narrower range",
+                range.0, range.1
+            ))
+        }
+        Drive::Free { .. } if low.is_finite() || high.is_finite() => Err(format!(
+            "the tables of unit \"{name}\" are known from {low} to {high} °, and it turns freely: what counts is the mean over a \
+             revolution, which takes tables of a full turn"
+        )),
+        _ => Ok(()),
     }
 }
 
