@@ -34,6 +34,26 @@ fn calibration(runs: &Runs) -> Calibration {
     Calibration::of(runs, &Expansion::default(), true).unwrap()
 }
 
+/// Play that an axis takes up the other way round makes all Bi negative: B is the largest by size, its mean keeps the sign.
+#[test]
+fn a_negative_reversal_counts_by_its_size() {
+    let targets = EXAMPLE.map(|(target, _, _)| target);
+    let found = calibration(&runs_of(&targets, 5, |target, direction, _| {
+        let play = if target > 600.0 { 6.0 } else { 4.0 };
+        if direction == Direction::Down {
+            play
+        } else {
+            0.0
+        }
+    }));
+    assert_near(found.axis.reversal_um, 6.0, 1e-12);
+    assert_near(
+        found.axis.mean_reversal_um,
+        -(3.0 * 4.0 + 2.0 * 6.0) / 5.0,
+        1e-12,
+    );
+}
+
 #[test]
 fn every_figure_is_as_by_hand() {
     let found = calibration(&example());

@@ -1,11 +1,11 @@
 //! Full rotations bound the error of small angles.
 
 use leadscrew_nc::coordinates::Axis;
-use leadscrew_process::deviations::SettingVector;
+use leadscrew_process::deviations::{Machine, SettingVector};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-use crate::machines::{bare, machine, place, settings, with_constants};
+use crate::machines::{bare, five_axes, machine, place, settings, with_constants};
 
 fn cases() -> ProptestConfig {
     let long = std::env::var_os("LEADSCREW_LONG").is_some();
@@ -13,11 +13,11 @@ fn cases() -> ProptestConfig {
 }
 
 fn difference(
-    number: usize,
+    bare: Machine,
     settings: &[SettingVector],
     parts: &[f64],
 ) -> (f64, f64, f64, SettingVector) {
-    let machine = with_constants(bare(number), settings);
+    let machine = with_constants(bare, settings);
     let at = place(&machine, parts);
     let small = machine.deviation(&at).unwrap();
     let exact = machine.exact_deviation(&at).unwrap();
@@ -39,7 +39,18 @@ proptest! {
         parts in prop::array::uniform4(0.0..=1.0),
     ) {
         let settings: Vec<_> = settings.into_iter().map(|one| one * scale).collect();
-        let (off, bound, theta, turns) = difference(number, &settings, &parts);
+        let (off, bound, theta, turns) = difference(bare(number), &settings, &parts);
+        prop_assert!(off <= bound, "{off} mm, bound {bound} mm");
+        prop_assert!(turns.turn.norm() <= 0.5 * theta * theta * theta.exp());
+    }
+
+    /// Where a rotary axis carries another one, the deviations of the latter go round with the former.
+    #[test]
+    fn the_small_angle_sum_follows_a_rotary_axis_that_carries_another(
+        settings in prop::collection::vec(settings(0.05, 1e-4), 5),
+        parts in prop::array::uniform5(0.0..=1.0),
+    ) {
+        let (off, bound, theta, turns) = difference(five_axes(), &settings, &parts);
         prop_assert!(off <= bound, "{off} mm, bound {bound} mm");
         prop_assert!(turns.turn.norm() <= 0.5 * theta * theta * theta.exp());
     }
@@ -76,11 +87,11 @@ fn the_bound_is_tight_within_a_factor_of_two() {
     let turn = SettingVector::new([0.0, 0.0, 0.0, 0.0, 0.0, 1e-3]);
     let mut settings = vec![SettingVector::ZERO; 5];
     settings[3] = turn;
-    let (off, bound, ..) = difference(0, &settings, &[0.5, 1.0, 0.5, 0.0]);
+    let (off, bound, ..) = difference(bare(0), &settings, &[0.5, 1.0, 0.5, 0.0]);
     // The tip lies 450 mm from the spindle head's frame, along z: a turn about z moves nothing, one about x does.
     assert!(off < 1e-12 * bound, "{off} of {bound}");
     settings[3] = SettingVector::new([0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]);
-    let (off, bound, ..) = difference(0, &settings, &[0.5, 1.0, 0.5, 0.0]);
+    let (off, bound, ..) = difference(bare(0), &settings, &[0.5, 1.0, 0.5, 0.0]);
     assert!(off > 0.5 * bound && off <= bound, "{off} of {bound}");
 }
 

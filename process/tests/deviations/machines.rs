@@ -16,6 +16,49 @@ pub fn bare(number: usize) -> Machine {
     machine(BUILT_IN[number].0).perfect()
 }
 
+/// A trunnion that carries a rotary table, under three slides: the table's own deviations go round with the trunnion.
+const FIVE_AXES: &str = r#"
+name = "five axes"
+origin = "of the tests"
+drive_errors = "included"
+tool_mm = [0.0, 0.0, -120.0]
+[[workpiece]]
+name = "trunnion"
+axis = "A"
+rotary = "-x"
+range_deg = [-110.0, 110.0]
+frame_mm = [0.0, 50.0, -30.0]
+[[workpiece]]
+name = "table"
+axis = "C"
+rotary = "-z"
+range_deg = [0.0, 360.0]
+frame_mm = [0.0, -20.0, 60.0]
+[[tool]]
+name = "portal"
+axis = "Y"
+linear = "+y"
+range_mm = [-200.0, 200.0]
+frame_mm = [-300.0, 0.0, 500.0]
+[[tool]]
+name = "carriage"
+axis = "X"
+linear = "+x"
+range_mm = [-250.0, 250.0]
+frame_mm = [300.0, 0.0, 0.0]
+[[tool]]
+name = "ram"
+axis = "Z"
+linear = "+z"
+range_mm = [-200.0, 100.0]
+frame_mm = [0.0, -100.0, -150.0]
+"#;
+
+/// A machine with two rotary axes, one on the other, without deviations.
+pub fn five_axes() -> Machine {
+    read(FIVE_AXES).expect("a good file").machine
+}
+
 /// Setting vectors with shifts and turns up to these.
 pub fn settings(shift_mm: f64, turn: f64) -> impl Strategy<Value = SettingVector> {
     let shift = prop::array::uniform3(-shift_mm..=shift_mm);

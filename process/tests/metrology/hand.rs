@@ -78,6 +78,25 @@ fn a_hole_by_hand() {
 }
 
 #[test]
+fn a_touch_left_out_is_held_against_what_the_others_foretell() {
+    let settings = Settings {
+        without_outliers: true,
+        ..Settings::default()
+    };
+    let touched = [10.0, 10.001, 9.999, 10.0, 10.1];
+    let fitted = tool::setting(&touched, 0.0, Some(0.001), &settings).unwrap();
+    assert_eq!(fitted.quality.outliers(), [4]);
+    assert_near(fitted.value, 10.0, 1e-12);
+    // 0.1 mm against σ² of the touch and σ²/4 of the mean of the other four.
+    let standardised = fitted.quality.residuals[4].standardised.unwrap();
+    assert_near(standardised, 100.0 / 1.25_f64.sqrt(), 1e-9);
+    assert_near(fitted.quality.peak_to_valley_mm(), 0.002, 1e-12);
+    // One that counts has less than its own: σ²·(1 − ¼).
+    let counted = fitted.quality.residuals[1].standardised.unwrap();
+    assert_near(counted, 1.0 / 0.75_f64.sqrt(), 1e-9);
+}
+
+#[test]
 fn repeated_touches_are_no_ovality() {
     // Every wall is met twice, 3 µm apart: both means of two diameters are the same, and so are those along x with 4 µm more.
     let nominal = Nominal::straight(Axis::Y, [0.0; 3], 40.0);
@@ -104,6 +123,30 @@ fn repeated_touches_are_no_ovality() {
         .collect();
     let fitted = circle::fit(&nominal, &along_z, &settings()).unwrap();
     assert_eq!(fitted.value.ovality_mm, None);
+}
+
+#[test]
+fn perpendicularity_is_the_axis_less_the_face() {
+    // The axis moves by 30 µm in x over 100 mm of z: β = +3e-4. The face falls by 10 µm over 100 mm of x: β = −∂z/∂x = +1e-4.
+    let nominal = Nominal::straight(Axis::Z, [0.0; 3], 40.0);
+    let section = |z: f64, off: f64| {
+        [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(|(x, y)| {
+            let place = [20.0 * x, 20.0 * y, z];
+            Touch::at(place, [-x, -y, 0.0], [place[0] + off, place[1], z])
+        })
+    };
+    let touches = [section(0.0, 0.0), section(100.0, 0.03)].concat();
+    let axis = bore::fit(&nominal, &touches, Diameters::OfSections, &settings()).unwrap();
+    assert_all_near(axis.value.rotation, [0.0, 3e-4, 0.0], 1e-12);
+    let face = [
+        touch([0.0, 0.0, 0.0], Axis::Z, 1.0, 0.0),
+        touch([100.0, 0.0, 0.0], Axis::Z, 1.0, -0.01),
+        touch([0.0, 100.0, 0.0], Axis::Z, 1.0, 0.0),
+    ];
+    let face = plane::fit(&face, &settings()).unwrap();
+    assert_all_near(face.value.rotation, [0.0, 1e-4, 0.0], 1e-15);
+    let square = relations::perpendicularity((&nominal, &axis), &face).unwrap();
+    assert_all_near(square.value, [0.0, 2e-4, 0.0], 1e-12);
 }
 
 #[test]

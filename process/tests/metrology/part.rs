@@ -329,3 +329,24 @@ fn a_touch_begins_within_a_hole_that_narrows() {
         &["cone: the stylus, radius 6 mm", "at point 2"],
     );
 }
+
+/// A bored surface grows: its stock is what the least radius lacks, and the sizes after the passes are diameters that grow.
+#[test]
+fn a_bored_blank_is_opened_up_to_its_size() {
+    let text = "[[turned]]\nname = \"bore\"\ndiameter_mm = 40\ninside = true\nplaces_mm = [-5, -20]\n\
+                [[passes]]\nname = \"open up\"\nof = \"bore\"\nfinished_mm = 50\nmax_depth_mm = 2\nfinishing_mm = 0.5\n";
+    let part = part::read(text).unwrap();
+    let table = "feature,point,measured_x_mm,measured_y_mm,measured_z_mm\nbore,1,20.1,0,-5\nbore,2,20,0,-20\n";
+    let touches = touches::read(table, &part).unwrap();
+    let report = evaluate::evaluate(text, &part, &touches, &Settings::default()).unwrap();
+    for (quantity, expected) in [
+        ("stock", 5.0),
+        ("passes", 4.0),
+        ("depth 1", 1.5),
+        ("size 1", 43.0),
+        ("size 3", 49.0),
+        ("size 4", 50.0),
+    ] {
+        assert_near(value(&report, "open up", quantity), expected, 1e-12);
+    }
+}

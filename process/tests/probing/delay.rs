@@ -26,6 +26,25 @@ fn two_touches_at_two_speeds_give_the_quotient_of_the_differences() {
 }
 
 #[test]
+fn the_scatter_at_a_speed_is_twice_the_standard_deviation() {
+    // ±1 µm about a mean from three touches: s² = (1 + 0 + 1)/2. A speed 1 % off is the same one.
+    let touches = [
+        touch(100.0, 10.001),
+        touch(101.0, 10.0),
+        touch(100.0, 9.999),
+        touch(200.0, 10.0),
+    ];
+    let found = find(&touches, &Settings::default()).unwrap();
+    let [slow, fast] = &found.speeds[..] else {
+        panic!("{:?}", found.speeds);
+    };
+    assert_eq!((slow.touches, fast.touches), (3, 1));
+    assert!((slow.mean_mm - 10.0).abs() < 1e-12);
+    assert!((slow.two_sigma_mm.unwrap() - 0.002).abs() < 1e-12);
+    assert_eq!(fast.two_sigma_mm, None);
+}
+
+#[test]
 fn what_does_not_tell_a_delay_is_refused() {
     let message =
         |touches: &[SpeedTouch]| find(touches, &Settings::default()).unwrap_err().to_string();

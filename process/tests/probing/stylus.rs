@@ -191,6 +191,12 @@ proptest! {
             let error = found.radius_towards(way) - probe.radius(way);
             prop_assert!(error.abs() < 5.0 * noise_mm * (5.0_f64 / 36.0).sqrt(), "{}", error);
         }
+        for lobe in &found.lobes {
+            let [cosine, sine] = [lobe.cosine_mm.value, lobe.sine_mm.value];
+            let turns = (0..3600).map(|part| f64::from(part) * TAU / 3600.0);
+            let largest = turns.map(|angle| (cosine * angle.cos() + sine * angle.sin()).abs()).fold(0.0, f64::max);
+            prop_assert!((lobe.amplitude_mm - largest).abs() <= 1e-6 * lobe.amplitude_mm);
+        }
         let sigma = found.radius_mm.sigma.unwrap() / (noise_mm / 6.0);
         prop_assert!(sigma > 0.5 && sigma < 1.6, "{}", sigma);
     }

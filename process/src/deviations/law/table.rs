@@ -146,6 +146,17 @@ mod tests {
     }
 
     #[test]
+    fn the_mean_of_a_table_weighs_each_stretch_by_its_length() {
+        // 0 to 2 over a quarter, 2 to 0 over three: 1 in the mean of each.
+        let steep = Table::new(vec![0.0, 90.0, 360.0], b_of(&[0.0, 2.0, 0.0]), true).unwrap();
+        assert_eq!(steep.mean().shift.y, 1.0);
+        // 1 over a quarter, 1 to 3 over a quarter, 3 to 1 over the rest: ¼·1 + ¼·2 + ½·2.
+        let places = vec![0.0, 90.0, 180.0, 360.0];
+        let uneven = Table::new(places, b_of(&[1.0, 1.0, 3.0, 1.0]), true).unwrap();
+        assert_eq!(uneven.mean().shift.y, 1.75);
+    }
+
+    #[test]
     fn tables_that_cannot_be_are_refused() {
         let new = |places: &[f64], rotary| {
             let values = vec![SettingVector::ZERO; places.len()];
