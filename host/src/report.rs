@@ -157,6 +157,18 @@ pub fn figure_or_dash(figure: Option<f64>, decimals: usize) -> String {
     figure.map_or_else(|| "-".to_owned(), |figure| format!("{figure:.decimals$}"))
 }
 
+/// The number with that many decimals, and no zero with a sign.
+#[must_use]
+pub fn decimals(value: f64, count: usize) -> String {
+    let text = format!("{value:.count$}");
+    let is_zero = text.chars().all(|digit| "-0.".contains(digit));
+    if is_zero {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
+}
+
 /// Writes the shared columns of a tick, and any further ones.
 pub struct CsvReport<W: Write> {
     writer: csv::Writer<W>,

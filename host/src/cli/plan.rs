@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::RateArgs;
+
 /// A figure of the paper on cycle frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PlanFigure {
@@ -42,14 +44,9 @@ pub struct PlanArgs {
         allow_negative_numbers = true
     )]
     pub lines: Option<f64>,
-    /// Tick rate, Hz (100 to 40000)
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1000.0,
-        allow_negative_numbers = true
-    )]
-    pub tick_hz: f64,
+    /// How often the core ticks
+    #[command(flatten)]
+    pub rate: RateArgs,
     /// Chord error that is allowed, d
     #[arg(
         long,

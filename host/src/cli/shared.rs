@@ -7,12 +7,9 @@ use clap::Args;
 use crate::progress::Progress;
 use crate::recording::{self, ChannelSelection, Recording, RecordingError};
 
-/// A simulated machine.
+/// The control rate.
 #[derive(Debug, Args)]
-pub struct SimulatedArgs {
-    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
-    pub machine: String,
+pub struct RateArgs {
     /// Control rate, Hz (100 to 40000)
     #[arg(
         long,
@@ -21,6 +18,17 @@ pub struct SimulatedArgs {
         allow_negative_numbers = true
     )]
     pub tick_hz: f64,
+}
+
+/// A simulated machine.
+#[derive(Debug, Args)]
+pub struct SimulatedArgs {
+    /// The machine: 16k20f3, 16k20f3-bare or a TOML file
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "16k20f3")]
+    pub machine: String,
+    /// How often the core ticks
+    #[command(flatten)]
+    pub rate: RateArgs,
     /// Seed of everything random
     #[arg(
         long,

@@ -73,7 +73,7 @@ fn out(args: &CalibrateEncoderArgs) -> Result<&PathBuf, CommandError> {
 }
 
 fn options(args: &CalibrateEncoderArgs) -> Result<Options, CommandError> {
-    let tick_hz = tick_rate(args.tick_hz)?;
+    let tick_hz = tick_rate(args.rate.tick_hz)?;
     let edges = edges_per_rev(args)?;
     if !(MIN_EDGES..=MAX_EDGES).contains(&edges) || !edges.is_multiple_of(4) {
         return Err(CommandError::Usage(format!(

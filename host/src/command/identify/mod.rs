@@ -60,7 +60,7 @@ pub(super) fn bench(args: &BenchArgs) -> Result<Bench, CommandError> {
             window_mm: checked("--window-mm", args.window_mm, 0.1, 1000.0).map_err(usage("mm"))?,
             ..IdentifyParams::default()
         },
-        tick_hz: tick_rate(args.simulated.tick_hz)?,
+        tick_hz: tick_rate(args.simulated.rate.tick_hz)?,
         nominal_feed_mm_per_min: checked("--nominal-feed", args.nominal_feed, 0.1, 1e6)
             .map_err(usage("mm/min"))?,
         reversed: args.reverse_drive,

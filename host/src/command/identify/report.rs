@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::axis::IdentifiedAxis;
 use crate::cli::BenchArgs;
 use crate::identify::{Bench, Found};
-use crate::report::text_table;
+use crate::report::{self, text_table};
 
 /// The report of an identification.
 #[derive(Serialize)]
@@ -240,13 +240,9 @@ fn rows(found: &Identified, drive: &DriveParams) -> Vec<Row> {
     ]
 }
 
-/// Four decimals, and no zero with a sign.
+/// Four decimals.
 fn decimal(value: f64) -> String {
-    let text = format!("{value:.4}");
-    match text.as_str() {
-        "-0.0000" => "0.0000".to_owned(),
-        _ => text,
-    }
+    report::decimals(value, 4)
 }
 
 /// mm/min of 1 d/tick.

@@ -37,7 +37,7 @@ pub fn run(args: &PlanArgs) -> Result<(), CommandError> {
         return list(args, &catalogue);
     }
     let question = Question {
-        tick_hz: args.tick_hz,
+        tick_hz: args.rate.tick_hz,
         allowed_d: args.chord,
         max_line_hz: 1000.0 * args.line_khz,
         radii_mm: args.radius.clone(),

@@ -41,7 +41,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), CommandError> {
     if crate::recorded::is_recording(&args.file) {
         return axis::run(args);
     }
-    let tick_hz = tick_rate(args.tick_hz)?;
+    let tick_hz = tick_rate(args.rate.tick_hz)?;
     let configs = match &args.estimator {
         Some(name) => vec![chosen(name, args.window, args.answer.as_deref())?],
         None => all_estimators(),

@@ -77,7 +77,7 @@ pub fn run(args: &SimArgs) -> Result<(), CommandError> {
 }
 
 fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, CommandError> {
-    let tick_hz = tick_rate(args.simulated.tick_hz)?;
+    let tick_hz = tick_rate(args.simulated.rate.tick_hz)?;
     let move_mm = checked("--move-mm", args.move_mm, -MAX_MOVE_MM, MAX_MOVE_MM)
         .map_err(|error| CommandError::Usage(format!("{error} mm")))?;
     check_length(args)?;
@@ -97,7 +97,7 @@ fn spec(args: &SimArgs, machine: MachineParams) -> Result<RunSpec<'static>, Comm
 
 /// Refuses a run that is too long to be kept; the ramps that it adds to this do not matter.
 fn check_length(args: &SimArgs) -> Result<(), CommandError> {
-    let cruise_ticks = 2.0 * (args.move_mm / args.feed).abs() * 60.0 * args.simulated.tick_hz;
+    let cruise_ticks = 2.0 * (args.move_mm / args.feed).abs() * 60.0 * args.simulated.rate.tick_hz;
     if args.feed > 0.0 && cruise_ticks > MAX_TICKS as f64 {
         return Err(CommandError::Usage(format!(
             "{} mm at {} mm/min and back are {cruise_ticks:.0} ticks, more than the {MAX_TICKS} that are kept in \
@@ -118,7 +118,7 @@ fn blame_option(args: &SimArgs, drive: &DriveParams, error: ScenarioError) -> Co
             "max_feed_mm_per_min" | "max_velocity_d_per_tick" => feed,
             // Right in m/s² and m/s³, too much in a tick this long or too little in one this short.
             "max_acceleration_d_per_tick2" | "max_jerk_d_per_tick3" => {
-                format!("--tick-hz {}", args.simulated.tick_hz)
+                format!("--tick-hz {}", args.simulated.rate.tick_hz)
             }
             _ => return error.into(),
         },
@@ -139,7 +139,7 @@ fn untunable(args: &SimArgs, drive: &DriveParams, range: &RangeError) -> Command
     CommandError::Data(format!(
         "{}: a loop cannot be tuned on this machine's drive at {} Hz: [drive] natural_period_s = {} and \
          damping = {} give no usable gain ({range}): make them smaller or change --tick-hz",
-        args.simulated.machine, args.simulated.tick_hz, drive.natural_period_s, drive.damping
+        args.simulated.machine, args.simulated.rate.tick_hz, drive.natural_period_s, drive.damping
     ))
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::scenes::SceneName;
-use crate::cli::ChannelArgs;
+use crate::cli::{ChannelArgs, RateArgs};
 
 /// What the figures mean.
 const MEASURES: &str = "\
@@ -26,14 +26,9 @@ pub struct TuneFilterArgs {
     /// A simulated scene instead
     #[arg(long, value_enum, value_name = "NAME", conflicts_with_all = ["a", "b", "z", "samplerate"])]
     pub scene: Option<SceneName>,
-    /// Control rate, Hz (100 to 40000)
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1000.0,
-        allow_negative_numbers = true
-    )]
-    pub tick_hz: f64,
+    /// How often the core ticks
+    #[command(flatten)]
+    pub rate: RateArgs,
     /// Weight of the lag in Φ, 1/tick
     #[arg(
         long,

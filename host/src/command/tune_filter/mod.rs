@@ -28,7 +28,7 @@ const MAX_WEIGHT: f64 = 1e6;
 /// # Errors
 /// Bad usage, a capture or map that cannot be used, or a plot that cannot be written.
 pub fn run(args: &TuneFilterArgs) -> Result<(), CommandError> {
-    let tick_hz = tick_rate(args.tick_hz)?;
+    let tick_hz = tick_rate(args.rate.tick_hz)?;
     let weights = weights(args)?;
     let outputs = OutputArgs {
         json: args.json,

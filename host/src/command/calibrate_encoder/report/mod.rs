@@ -128,7 +128,7 @@ impl Report {
             file.map_or_else(String::new, |file| file.display().to_string())
         };
         let seconds = |stretch: &Stretch| {
-            let at = |tick: u64| tick as f64 / args.tick_hz;
+            let at = |tick: u64| tick as f64 / args.rate.tick_hz;
             (at(stretch.from), at(stretch.to))
         };
         let run = |run: &RunFigures| {
@@ -214,7 +214,7 @@ impl Run {
             } else {
                 "forward"
             },
-            speed: summary.speed_d_s / args.tick_hz,
+            speed: summary.speed_d_s / args.rate.tick_hz,
             rpm: 60.0 * summary.speed_d_s / f64::from(args.edges_per_rev.unwrap_or(1)),
             revolutions: summary.revolutions,
             pass_noise: summary.pass_sigma_d,
