@@ -55,19 +55,24 @@ pub enum CalibrateProbeCommand {
         #[arg(value_name = "FILE.csv")]
         file: PathBuf,
         /// Diameter of the ring that is touched within, mm
-        #[arg(long, value_name = "MM", required_unless_present_any = ["boss", "sphere"], conflicts_with_all = ["boss", "sphere"])]
+        #[arg(long, value_name = "MM", required_unless_present_any = ["boss", "sphere"], conflicts_with_all = ["boss", "sphere"], allow_negative_numbers = true)]
         ring: Option<f64>,
         /// Diameter of the boss that is touched from outside, mm
-        #[arg(long, value_name = "MM", conflicts_with = "sphere")]
+        #[arg(
+            long,
+            value_name = "MM",
+            conflicts_with = "sphere",
+            allow_negative_numbers = true
+        )]
         boss: Option<f64>,
         /// Diameter of the sphere, mm
-        #[arg(long, value_name = "MM")]
+        #[arg(long, value_name = "MM", allow_negative_numbers = true)]
         sphere: Option<f64>,
         /// Highest order of the lobes that is sought, 2 to 12; 0 for a radius alone
         #[arg(long, value_name = "K", default_value_t = 3)]
         orders: u32,
         /// Radius of the stylus's ball, mm, for the pre-travel in the table
-        #[arg(long, value_name = "MM")]
+        #[arg(long, value_name = "MM", allow_negative_numbers = true)]
         ball_radius: Option<f64>,
         /// How
         #[command(flatten)]

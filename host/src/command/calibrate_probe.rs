@@ -30,7 +30,7 @@ pub fn run(command: &CalibrateProbeCommand) -> Result<(), CommandError> {
                 touches.extend(read(file, SpeedTouch::read)?);
             }
             let found = delay::find(&touches, &settings(how)).map_err(data)?;
-            tell(&found, how, delay_text)
+            tell("delay", &found, how, delay_text)
         }
         CalibrateProbeCommand::Stylus {
             file,
@@ -48,19 +48,26 @@ pub fn run(command: &CalibrateProbeCommand) -> Result<(), CommandError> {
             let (artefact, diameter_mm) = known
                 .next_back()
                 .ok_or_else(|| CommandError::Usage("give --ring, --boss or --sphere".to_owned()))?;
+            if let Some(ball) = ball_radius {
+                leadscrew::units::checked("--ball-radius", *ball, 0.0, 1000.0)
+                    .map_err(|error| CommandError::Usage(format!("{error} mm")))?;
+            }
             let triggers = read(file, |text| stylus::read(text, artefact))?;
             let reference = Reference {
                 artefact,
                 diameter_mm,
                 orders: *orders,
             };
-            let found = stylus::calibrate(&reference, &triggers, &settings(how)).map_err(data)?;
-            tell(&found, how, |found| stylus_text(found, *ball_radius))
+            let found =
+                stylus::calibrate(&reference, &triggers, &settings(how)).map_err(of(file))?;
+            tell("stylus", &found, how, |found| {
+                stylus_text(found, *ball_radius)
+            })
         }
         CalibrateProbeCommand::RunOut { file, how } => {
             let touches = read(file, TurnedTouch::read)?;
-            let found = run_out::find(&touches, &settings(how)).map_err(data)?;
-            tell(&found, how, run_out_text)
+            let found = run_out::find(&touches, &settings(how)).map_err(of(file))?;
+            tell("run-out", &found, how, run_out_text)
         }
     }
 }
@@ -76,6 +83,11 @@ fn data(error: impl std::fmt::Display) -> CommandError {
     CommandError::Data(error.to_string())
 }
 
+/// An error of a file as a whole.
+fn of<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> CommandError {
+    move |error| data(format!("{}: {error}", path.display()))
+}
+
 fn read<T>(
     path: &Path,
     parse: impl Fn(&str) -> Result<Vec<T>, leadscrew_nc::source::Complaint>,
@@ -85,13 +97,23 @@ fn read<T>(
     parse(&text).map_err(CommandError::content(path))
 }
 
+/// What was found, with what it is.
+#[derive(Serialize)]
+struct Told<'r, T> {
+    schema: String,
+    #[serde(flatten)]
+    found: &'r T,
+}
+
 fn tell<T: Serialize>(
+    what: &str,
     found: &T,
     how: &FitArgs,
     text: impl Fn(&T) -> String,
 ) -> Result<(), CommandError> {
     if how.output.json {
-        print_json(found)
+        let schema = format!("leadscrew/calibrate-probe-{what}/1");
+        print_json(&Told { schema, found })
     } else {
         print(&text(found))
     }

@@ -21,6 +21,7 @@ fn a_delay_comes_out_of_two_files() {
     let text = folder.printed("calibrate-probe delay slow.csv fast.csv");
     assert!(text.contains("trigger delay  600.0 ± "), "{text}");
     let json = folder.json("calibrate-probe delay slow.csv fast.csv");
+    assert_eq!(json["schema"], "leadscrew/calibrate-probe-delay/1");
     let delay = json["delay_s"]["value"].as_f64().unwrap();
     assert!((delay - 6e-4).abs() < 1e-6, "{delay}");
     let error = folder.refused(1, "calibrate-probe delay slow.csv");
@@ -56,6 +57,31 @@ fn a_stylus_comes_out_of_a_ring() {
         assert!(text.contains(expected), "{expected:?} in {text}");
     }
     folder.refused(2, "calibrate-probe stylus ring.csv");
+    for (code, arguments, said) in [
+        (
+            1,
+            "--ring -25",
+            "ring.csv: diameter = -25 mm: expected more than 0",
+        ),
+        (1, "--ring 25 --orders 13", "ring.csv: orders = 13"),
+        (
+            2,
+            "--ring 25 --ball-radius -3",
+            "--ball-radius = -3 is out of range",
+        ),
+    ] {
+        let error = folder.refused(
+            code,
+            &format!("calibrate-probe stylus ring.csv {arguments}"),
+        );
+        assert!(error.contains(said), "{arguments}: {error}");
+    }
+    folder.write("few.csv", "x_mm,y_mm\n0,1\n1,0\n");
+    let error = folder.refused(1, "calibrate-probe stylus few.csv --ring 25");
+    assert!(
+        error.contains("few.csv: a stylus needs 7 touches or more, found 2"),
+        "{error}"
+    );
 }
 
 #[test]
