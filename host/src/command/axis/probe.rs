@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use leadscrew::probe::ProbeEnd;
-use leadscrew_client::{Axis, ProbeStatus, Touch};
+use leadscrew::supervisor::Fault;
+use leadscrew_client::{Axis, Error, ProbeStatus, Touch};
 use serde::Serialize;
 
 use crate::axis::values::named_request;
@@ -47,7 +48,7 @@ pub fn run(axis: &mut Axis, args: &ProbeArgs) -> Result<(), CommandError> {
     if args.enable {
         axis.disable()?;
     }
-    let (touches, failed) = touched?;
+    let (touches, failed) = touched.map_err(commissioned)?;
     if let Some(path) = &args.csv
         && !touches.is_empty()
     {
@@ -66,6 +67,20 @@ pub fn run(axis: &mut Axis, args: &ProbeArgs) -> Result<(), CommandError> {
             |end| end.to_string(),
         ))),
     }
+}
+
+/// A touch creeps, and a loop of the factory stands still in a machine's friction until it is too far behind.
+fn commissioned(error: CommandError) -> CommandError {
+    let fault = match &error {
+        CommandError::Axis(Error::Faulted(number)) => Fault::from_number(*number),
+        _ => None,
+    };
+    if fault != Some(Fault::FollowingError) {
+        return error;
+    }
+    CommandError::Data(format!(
+        "{error} A touch creeps, which the factory's loop cannot on a machine with friction: commission the axis by `leadscrew setup` first"
+    ))
 }
 
 /// Touches until there are enough or one is not good: that one comes apart.

@@ -1,6 +1,7 @@
 //! `probe` on the simulated axis.
 
 use super::Bench;
+use crate::Folder;
 
 #[test]
 fn the_part_of_the_simulated_axis_is_touched_as_often_as_asked() {
@@ -36,4 +37,18 @@ fn what_cannot_be_probed_is_told() {
     assert!(usage.contains("--retract"), "{usage}");
     let off = bench.refused(1, "probe --towards 20 --feed 100");
     assert!(off.contains("leadscrew serve"), "{off}");
+}
+
+/// Factory settings on the machine with friction: the loop cannot creep, and the way out is told.
+#[test]
+fn a_loop_of_the_factory_that_cannot_creep_is_told_to_be_commissioned() {
+    let folder = Folder::new();
+    let output = folder.run("--port sim probe --enable --towards 20 --feed 100");
+    assert_eq!(output.status.code(), Some(1));
+    let error = crate::text(&output.stderr);
+    assert!(error.contains("FollowingError"), "{error}");
+    assert!(
+        error.contains("commission the axis by `leadscrew setup`"),
+        "{error}"
+    );
 }
