@@ -32,6 +32,11 @@ const DELAY_S: f64 = 5e-4;
 const JITTER_S: f64 = 1e-5;
 /// 2σ of the latch itself with a learned map, mm.
 const LATCH_2S_MM: f64 = 1e-4;
+/// How far a probe is withdrawn until it is released: so many 2σ at the least. Two triggers in a row lie no farther apart than 3.45
+/// of them, or the probe would touch anew on its way back.
+const RELEASE_2S: f64 = 4.0;
+/// Touches that the axis is referenced by.
+const REFERENCE_TOUCHES: u32 = 25;
 
 /// The map of the simulated encoder of a seed, learned by the product's own calibration.
 ///
@@ -49,22 +54,27 @@ pub fn learned_map(seed: u64) -> Result<Vec<u8>, String> {
 pub struct ProbedAxis<'m> {
     bench: TouchBench<'m>,
     sigma_mm: f64,
+    /// What the axis reads too much, everywhere alike, mm.
+    zero_mm: f64,
 }
 
 impl<'m> ProbedAxis<'m> {
-    /// An axis with a learned map and a probe of so much repeatability, 2σ in mm.
+    /// An axis with a learned map and a probe of so much repeatability, 2σ in mm. It is referenced once on a surface whose place is
+    /// known, as machines are after their map was learned: where a map puts the encoder's zero is its own choice.
     ///
     /// # Errors
-    /// An axis that does not become ready.
+    /// An axis that does not become ready or does not touch.
     pub fn new(map: &'m [u8], repeatability_2s_mm: f64, seed: u64) -> Result<Self, String> {
         let machine = MachineParams::z_16k20f3();
+        let base = TouchProbeParams::default();
         let probe = TouchProbeParams {
             surface_mm: AWAY_MM,
             at_shaft: 1.0,
             delay_s: DELAY_S,
             jitter_s: JITTER_S,
             repeatability_2s_mm,
-            ..TouchProbeParams::default()
+            release_mm: base.release_mm.max(RELEASE_2S * repeatability_2s_mm),
+            ..base
         };
         let said = |error: &dyn std::fmt::Display| error.to_string();
         let map = EncoderMap::from_bytes(map).map_err(|error| said(&error))?;
@@ -76,10 +86,23 @@ impl<'m> ProbedAxis<'m> {
         bench
             .go_to(1.2 * REVOLUTION_MM, APPROACH)
             .map_err(|error| said(&error))?;
-        Ok(Self {
+        let mut axis = Self {
             bench,
             sigma_mm: 0.5 * repeatability_2s_mm.hypot(LATCH_2S_MM),
-        })
+            zero_mm: 0.0,
+        };
+        axis.zero_mm = axis.reference()?;
+        Ok(axis)
+    }
+
+    /// The mean of touches of a surface at 0, from both sides in turn.
+    fn reference(&mut self) -> Result<f64, String> {
+        let mut sum = 0.0;
+        for number in 0..REFERENCE_TOUCHES {
+            let from_mm = if number % 2 == 0 { -1.0 } else { 1.0 };
+            sum += self.touch(0.0, from_mm)?;
+        }
+        Ok(sum / f64::from(REFERENCE_TOUCHES))
     }
 }
 
@@ -116,7 +139,7 @@ impl Touching for ProbedAxis<'_> {
             .filter(|_| touched.report.is_good())
             .ok_or_else(|| format!("probing ended with {:?}", touched.report.end))?;
         let latched = 1e-3 * touch.raw.to_num::<f64>();
-        Ok(contact_mm + latched - here)
+        Ok(contact_mm + latched - here - self.zero_mm)
     }
 
     fn sigma_mm(&self) -> f64 {

@@ -10,7 +10,7 @@ pub struct ProveOutArgs {
     /// Seed of all that is wrong, and of all noise
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Repeatability of the probe, 2σ in µm, 0.01 to 5
+    /// Repeatability of the probe, 2σ in µm, 0.01 to 50
     #[arg(long, value_name = "UM", default_value_t = 1.0)]
     pub probe_um: f64,
     /// Write the corrected program to FILE

@@ -15,9 +15,8 @@ use crate::probed_axis::{ProbedAxis, learned_map};
 use crate::progress::Progress;
 use crate::whole_file;
 
-/// 2σ of a probe that is believed, µm: one that scatters by more touches again as it is withdrawn from the simulated surface, which
-/// releases it after 5 µm.
-const PROBE_UM: (f64, f64) = (0.01, 5.0);
+/// 2σ of a probe that is believed, µm: the simulated surface releases one that scatters by no more, well before the way back ends.
+const PROBE_UM: (f64, f64) = (0.01, 50.0);
 
 /// Runs the command.
 ///

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use leadscrew_process::prove_out::{Feature, ProveOut, Row, SIGMAS};
 use serde::Serialize;
 
-use crate::report::text_table;
+use crate::report::{decimals, text_table};
 
 /// The report.
 #[derive(Serialize)]
@@ -84,7 +84,15 @@ impl Report {
     /// The report for people.
     pub fn to_text(&self) -> String {
         let mut table = text_table(&[
-            "figure", "unit", "before", "probed", "unaware", "after", "bound", "probed", "bound",
+            "figure\n",
+            "unit\n",
+            "before\nin truth",
+            "before\nprobed",
+            "before\nunaware",
+            "after\nin truth",
+            "bound\nof it",
+            "after\nprobed",
+            "bound\nof it",
         ]);
         for row in &self.figures {
             let values = [
@@ -100,12 +108,12 @@ impl Report {
             table.add_row(
                 cells
                     .into_iter()
-                    .chain(values.map(|value| format!("{value:.2}"))),
+                    .chain(values.map(|value| decimals(value, 2))),
             );
         }
         let mut text = format!(
             "seed {}, {} touches of a probe of 2σ = {} um\n\n{}\n\n\
-             before, after: in truth; unaware: as the machine reads where it cut, told neither its deviations nor where the part lies\n\
+             unaware: as the machine reads where it cut, told neither its deviations nor where the part lies\n\
              bound: {SIGMAS} σ of setting, tools and map{}\n\n",
             self.seed,
             self.touches,
