@@ -20,7 +20,7 @@ pub struct Circle {
     /// Deviation of the diameter, mm.
     pub diameter_mm: f64,
     /// Largest less smallest diameter, mm; none without diameters in two directions. Of the measured diameters, the mean in each
-    /// direction, or with touches in six directions and more of the ellipse that fits best.
+    /// direction, or with six touches and more, in five directions at the least, of the ellipse that fits best.
     pub ovality_mm: Option<f64>,
     /// Greatest less least residual from the circle, mm; none without redundancy. It holds the noise of the touches too.
     pub form_mm: Option<f64>,

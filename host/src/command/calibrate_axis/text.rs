@@ -5,7 +5,7 @@ use std::fmt::Write;
 use leadscrew_process::axis_calibration::{Calibration, Uncertainty};
 
 use super::Report;
-use crate::report::text_table;
+use crate::report::{decimals, text_table};
 
 pub(super) fn of(report: &Report<'_>, pitch: Option<f64>) -> String {
     let calibration = report.calibration;
@@ -70,7 +70,13 @@ fn figures(calibration: &Calibration, uncertainty: &Uncertainty) -> String {
     let mut table = text_table(&["of the axis, µm", "both ways", "up", "down", "U (k = 2)"]);
     let mut row = |name: &str, both: f64, one_way: Option<[f64; 2]>, uncertainty: f64| {
         let [up, down] = one_way.map_or(["-".to_owned(), "-".to_owned()], |pair| pair.map(um));
-        table.add_row([name.to_owned(), um(both), up, down, um(uncertainty)]);
+        // Where no source of it was told there is none, not one of 0.
+        let uncertainty = if uncertainty > 0.0 {
+            um(uncertainty)
+        } else {
+            "-".to_owned()
+        };
+        table.add_row([name.to_owned(), um(both), up, down, uncertainty]);
     };
     row(
         "reversal B",
@@ -131,8 +137,7 @@ fn sources(uncertainty: &Uncertainty) -> String {
     )
 }
 
-/// With two decimals; a zero has no sign.
+/// With two decimals.
 fn um(value: f64) -> String {
-    let plain = if value.abs() < 5e-3 { 0.0 } else { value };
-    format!("{plain:.2}")
+    decimals(value, 2)
 }

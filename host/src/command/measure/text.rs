@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use leadscrew_process::metrology::part::report::{FeatureReport, Report, Value};
 
-use crate::report::text_table;
+use crate::report::{decimals, text_table};
 
 /// A table of values, one of touches where any is flagged, and the notes.
 pub fn report(report: &Report) -> String {
@@ -43,7 +43,7 @@ fn values(report: &Report) -> String {
             table.add_row(row);
         }
     }
-    table.to_string()
+    table.trim_fmt()
 }
 
 /// Number of touches and unknowns, and where the 1σ comes from.
@@ -63,22 +63,13 @@ fn touches(feature: &FeatureReport) -> (String, String) {
 
 /// Lengths to 0.1 µm, angles in µrad to 0.1.
 fn shown(value: &Value) -> (String, String, &'static str) {
-    let (factor, decimals, unit) = match value.unit {
+    let (factor, digits, unit) = match value.unit {
         "rad" => (1e6, 1, "µrad"),
         "mm/mm" => (1e3, 4, "µm/mm"),
         "" => (1.0, 0, ""),
         unit => (1.0, 4, unit),
     };
-    let show = |number: f64| {
-        let text = format!("{:.decimals$}", number * factor);
-        // Nothing that rounds to zero has a sign.
-        let is_zero = text.trim_start_matches(['-', '0', '.']).is_empty();
-        if is_zero {
-            text.trim_start_matches('-').to_owned()
-        } else {
-            text
-        }
-    };
+    let show = |number: f64| decimals(number * factor, digits);
     let sigma = value.sigma.map_or_else(|| "-".to_owned(), show);
     (show(value.value), sigma, unit)
 }
@@ -108,7 +99,7 @@ fn outliers(report: &Report) -> String {
         }
     }
     if any {
-        format!("\n{table}\n")
+        format!("\n{}\n", table.trim_fmt())
     } else {
         String::new()
     }

@@ -44,8 +44,10 @@ impl Evaluation<'_> {
         let fitted = shoulder::fit(touches, along, self.settings)?;
         let mut report = self.report(index, "shoulder", &fitted);
         let (value, sigma) = (fitted.value, fitted.sigma);
+        // The fit takes faces square to an axis only.
+        let normal = Axis::along(touches[0].normal).map_or("normal", Axis::name);
         report.push(
-            "width",
+            format!("offset {normal}"),
             "mm",
             value.offset_mm,
             sigma.map(|sigma| sigma.offset_mm),
