@@ -35,6 +35,21 @@ fn the_report_is_the_golden_one() {
     insta::assert_snapshot!(text);
 }
 
+/// What nobody told is unknown, not 0: drift alone gives an uncertainty to all figures, the instrument none to a reversal.
+#[test]
+fn an_uncertainty_without_a_source_is_none() {
+    let folder = folder();
+    let last = |arguments: &str, figure: &str| {
+        let text = folder.printed(&format!("calibrate-axis runs.csv --pitch 10 {arguments}"));
+        let row = text.lines().find(|line| line.starts_with(figure)).unwrap();
+        row.split_whitespace().last().unwrap().to_owned()
+    };
+    assert_eq!(last("", "accuracy A"), "-");
+    assert_eq!(last("--device 1", "reversal B"), "-");
+    assert_eq!(last("--device 1", "accuracy A"), "0.31");
+    assert_eq!(last("--drift 1", "reversal B"), "0.37");
+}
+
 #[test]
 fn figures_tables_and_plot_are_written() {
     let folder = folder();
