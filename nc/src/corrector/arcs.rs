@@ -1,5 +1,7 @@
 //! Arcs: their ends, and I, J, K or R with them.
 
+use std::f64::consts::TAU;
+
 use super::Task;
 use super::instruction::{Found, Said, count, parameter};
 use super::known::Known;
@@ -7,10 +9,11 @@ use super::places::Goals;
 use super::refusal::{Reason, Within};
 use super::straight::Leg;
 use super::write::{Scale, default_style};
+use super::written_arc::{SameEnds, WrittenArc};
 use crate::coordinates::{Axis, AxisSet, Coordinates};
 use crate::path::PathError;
 use crate::path::arc::{Arc, Piece, corrected};
-use crate::terms::{Circumstances, Shape};
+use crate::terms::{Circumstances, ROUNDING, Shape};
 
 /// A circle that a leg goes along, corrected.
 #[derive(Clone, Copy, Debug)]
@@ -42,11 +45,16 @@ impl Task<'_> {
         }
         let goals = self.goals()?;
         let form = self.form()?;
-        if self.known.shape <= Shape::Constant {
-            return self.moved_arc(&goals, form);
+        let constant = self.known.shape <= Shape::Constant;
+        let mut plane = self.now.modes.plane.axes().into_iter();
+        if constant && !plane.any(|axis| self.known.corrects.contains(axis)) {
+            return self.single(&goals);
         }
         let (from, to) = self.ends(&goals)?;
         let arc = self.programmed_arc(&goals, from, to, form, clockwise)?;
+        if constant && !self.is_led_to(&arc)? {
+            return self.moved_arc(&goals, &arc);
+        }
         let with = self.standing_circumstances();
         let legs = self.legs_of(&arc, &from, &with)?;
         self.check_pieces(legs.len(), within)?;
@@ -230,121 +238,70 @@ impl Task<'_> {
         Ok(started)
     }
 
+    /// True where a line has to lead to the start of a full circle under one K everywhere: it ends where it begins, so there is no
+    /// other place where the control could come to stand right.
+    fn is_led_to(&self, arc: &Arc) -> Result<bool, Found> {
+        let k = self.correction(&arc.from, &self.standing_circumstances(), self.at())?;
+        let applied = self.applied();
+        let mut plane = arc.plane.axes().into_iter();
+        Ok(arc.is_closed() && plane.any(|axis| !self.scale(axis).says(applied[axis], k[axis])))
+    }
+
     /// With one K everywhere the arc stays the arc it is.
-    fn moved_arc(&mut self, goals: &Goals, form: Form) -> Result<(), Found> {
+    fn moved_arc(&mut self, goals: &Goals, arc: &Arc) -> Result<(), Found> {
         let at = self.at();
-        let place = self.place(goals, at)?;
-        let k = self.correction(&place, &self.circumstances(goals), at)?;
+        let k = self.correction(&arc.to, &self.circumstances(goals), at)?;
         let started = self.applied();
-        let [first, second] = self.now.modes.plane.axes();
+        let [first, second] = arc.plane.axes();
         let by_mm = (k[first] - started[first]).hypot(k[second] - started[second]);
         if by_mm > self.known.radius_tolerance_mm {
             return Err((at, Reason::ArcStart { by_mm }));
         }
-        if let Form::Centre = form {
-            for axis in [first, second] {
-                let Some(word) = self.centre_word(axis) else {
-                    continue;
-                };
-                let by = if self.now.modes.centre_absolute {
-                    k[axis] - self.now.axes[axis.index()].bias()
-                } else {
-                    k[axis] - started[axis]
-                };
-                let value = self.value(word)? + by;
-                self.rewrite(word, value, &self.centre_scale())?;
-            }
-            return self.say(goals, &k, AxisSet::NONE);
-        }
-        self.say(goals, &k, AxisSet::NONE)?;
-        self.check_moved_radius(goals, form, &started, &k)
+        let [x, y] = arc.centre;
+        let circle = Circle {
+            centre: [x + k[first], y + k[second]],
+            radius: arc.radii[0],
+            sweep: arc.sweep,
+        };
+        self.say_circle(goals, &k, &circle, AxisSet::NONE)
     }
 
-    /// R stays; the remainders of rounding at both ends must not move the centre that the control works out.
-    fn check_moved_radius(
-        &self,
-        goals: &Goals,
-        form: Form,
-        started: &Coordinates,
-        k: &Coordinates,
-    ) -> Result<(), Found> {
-        let Form::Radius(word) = form else {
-            return Ok(());
-        };
-        let plane = self.now.modes.plane;
-        let (mut from, mut way, mut to) = (Coordinates::ZERO, Coordinates::ZERO, Coordinates::ZERO);
-        for axis in plane.axes() {
-            way[axis] = goals[axis.index()].way;
-            from[axis] = started[axis];
-            to[axis] = way[axis] + self.now.axes[axis.index()].applied;
-        }
-        let radius = self.value(word)?;
-        let tolerance = self.known.radius_tolerance_mm;
-        let arc = |from, to| Arc::from_radius(plane, from, to, radius, false, 1, tolerance);
-        let (Ok(meant), Ok(written)) = (arc(Coordinates::ZERO, way), arc(from, to)) else {
-            return Ok(());
-        };
-        let [first, second] = plane.axes();
-        let off_mm = (written.centre[0] - meant.centre[0] - k[first])
-            .hypot(written.centre[1] - meant.centre[1] - k[second]);
-        if off_mm > self.known.tolerance.mm {
-            return Err((self.at(), Reason::RadiusForm { off_mm }));
-        }
-        Ok(())
-    }
-
-    /// Writes a leg along a circle into the block.
+    /// Writes a leg along a circle into the block, with words for the axes of `force` in any case.
     pub fn say_circle(
         &mut self,
         goals: &Goals,
         k: &Coordinates,
         circle: &Circle,
+        force: AxisSet,
     ) -> Result<(), Found> {
         let started = self.applied();
-        let standing = self.now.modes.plane.axes().map(|axis| goals[axis.index()]);
-        let moves = standing.iter().any(|goal| goal.way != 0.0);
-        let plane: AxisSet = self.now.modes.plane.axes().into_iter().collect();
-        let force = if moves {
-            self.named().union(plane)
-        } else {
-            self.named()
-        };
+        let (goals, k) = &self.closing(goals, *k, circle);
+        self.say_turns(circle)?;
         let scale = self.centre_scale();
-        match self.form()? {
-            Form::Radius(word) => {
-                self.say(goals, k, force)?;
-                let radius = self.radius_to_say(goals, &started, circle)?;
-                self.rewrite(word, radius, &scale)?;
-                return Ok(());
-            }
-            Form::Centre => {
-                for (axis, value) in self.centre_words(goals, &started, circle) {
-                    match self.centre_word(axis) {
-                        Some(word) => {
-                            self.rewrite(word, value, &scale)?;
-                        }
-                        None if scale.says(value, 0.0) && !self.now.modes.centre_absolute => {}
-                        None => {
-                            let letter = LETTERS[axis.index()];
-                            let end = self.block.words[self
-                                .said
-                                .centre
-                                .iter()
-                                .flatten()
-                                .copied()
-                                .max()
-                                .unwrap_or(0)]
-                            .span()
-                            .end;
-                            let style = self.centre_style(letter);
-                            self.insert_word(end, true, letter, value, &scale, style)?;
-                        }
-                    }
+        if let Form::Radius(word) = self.form()? {
+            self.say(goals, k, force)?;
+            let radius = self.radius_to_say(goals, &started, circle)?;
+            self.rewrite(word, radius, &scale)?;
+            return Ok(());
+        }
+        let mut centre = circle.centre;
+        let words = self.centre_words(goals, &started, circle);
+        for (place, (axis, value)) in centre.iter_mut().zip(words) {
+            let written = match self.centre_word(axis) {
+                Some(word) => self.rewrite(word, value, &scale)?,
+                None if scale.says(value, 0.0) && !self.now.modes.centre_absolute => 0.0,
+                None => {
+                    let letter = LETTERS[axis.index()];
+                    let last = self.said.centre.iter().flatten().copied().max();
+                    let end = self.block.words[last.unwrap_or(0)].span().end;
+                    let style = self.centre_style(letter);
+                    self.insert_word(end, true, letter, value, &scale, style)?
                 }
-            }
+            };
+            *place += written - value;
         }
         self.say(goals, k, force)?;
-        self.check_radii(goals, &started, circle)
+        self.check_written(goals, &started, centre, circle)
     }
 
     /// The words of the centre in a block beside this one.
@@ -363,12 +320,44 @@ impl Task<'_> {
             self.add_word(b'R', radius, &scale, style, text)?;
             return Ok(());
         }
-        for (axis, value) in self.centre_words(goals, started, circle) {
+        let mut centre = circle.centre;
+        let words = self.centre_words(goals, started, circle);
+        for (place, (axis, value)) in centre.iter_mut().zip(words) {
             let letter = LETTERS[axis.index()];
             let style = self.centre_style(letter);
-            self.add_word(letter, value, &scale, style, text)?;
+            *place += self.add_word(letter, value, &scale, style, text)? - value;
         }
-        self.check_radii(goals, started, circle)
+        self.check_written(goals, started, centre, circle)
+    }
+
+    /// Goals and K at the end of a leg: a full circle ends where it starts, to the last digit.
+    fn closing(&self, goals: &Goals, mut k: Coordinates, circle: &Circle) -> (Goals, Coordinates) {
+        let mut goals = *goals;
+        let plane = self.now.modes.plane.axes();
+        let stays = |axis: &Axis| goals[axis.index()].way.abs() <= ROUNDING;
+        if circle.is_full() && plane.iter().all(stays) {
+            for axis in plane {
+                goals[axis.index()].exact = true;
+                k[axis] = self.now.axes[axis.index()].applied;
+            }
+        }
+        (goals, k)
+    }
+
+    /// P counts the turns of the whole arc, of which a leg may have less.
+    fn say_turns(&mut self, circle: &Circle) -> Result<(), Found> {
+        let turns = (circle.sweep.abs() / TAU - 1e-9).ceil().max(1.0) as i64;
+        let word = self.block.words.iter().find(|word| word.letter == b'P');
+        let Some((word, number)) = word.and_then(|word| Some((word, word.number()?))) else {
+            return Ok(());
+        };
+        if number.whole() == Some(turns) {
+            return Ok(());
+        }
+        self.edits.put(word.value_span(), |text| {
+            number.write_like(turns, 0, false, text);
+            Ok(())
+        })
     }
 
     fn centre_style(&self, letter: u8) -> crate::block::Number {
@@ -418,17 +407,8 @@ impl Task<'_> {
         started: &Coordinates,
         circle: &Circle,
     ) -> Result<f64, Found> {
-        let plane = self.now.modes.plane;
-        let (mut from, mut to) = (Coordinates::ZERO, Coordinates::ZERO);
-        for axis in plane.axes() {
-            let goal = &goals[axis.index()];
-            from[axis] = circle_frame(goal) - goal.way + started[axis];
-            to[axis] = circle_frame(goal) + self.now.axes[axis.index()].applied;
-        }
         let off = |radius: f64| {
-            let tolerance = self.known.radius_tolerance_mm;
-            let clockwise = circle.sweep < 0.0;
-            let arc = Arc::from_radius(plane, from, to, radius, clockwise, 1, tolerance);
+            let arc = self.arc_of_radius(goals, started, radius, circle);
             arc.map_or(f64::INFINITY, |arc| {
                 let [x, y] = arc.centre;
                 let centre = (x - circle.centre[0]).hypot(y - circle.centre[1]);
@@ -447,29 +427,80 @@ impl Task<'_> {
             .into_iter()
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((nearest, f64::INFINITY));
+        let written = self.written_arc(goals, started, circle.centre, SameEnds::NoArc);
+        written
+            .check_sweep(circle.sweep)
+            .map_err(|reason| (self.at(), reason))?;
         if off_mm > self.known.tolerance.mm {
             return Err((self.at(), Reason::RadiusForm { off_mm }));
         }
         Ok(radius)
     }
 
-    /// What the control will find: radii at both ends of what was written.
-    fn check_radii(
+    /// The arc that the control works out of R and the ends as they are written.
+    fn arc_of_radius(
         &self,
         goals: &Goals,
         started: &Coordinates,
+        radius: f64,
+        circle: &Circle,
+    ) -> Result<Arc, PathError> {
+        let (from, to) = self.written_ends(goals, started);
+        let tolerance = self.known.radius_tolerance_mm;
+        let clockwise = circle.sweep < 0.0;
+        Arc::from_radius(
+            self.now.modes.plane,
+            from,
+            to,
+            radius,
+            clockwise,
+            1,
+            tolerance,
+        )
+    }
+
+    /// Where the control begins, having started with so much more, and where it ends after what is written.
+    fn written_ends(&self, goals: &Goals, started: &Coordinates) -> (Coordinates, Coordinates) {
+        let (mut from, mut to) = (Coordinates::ZERO, Coordinates::ZERO);
+        for axis in self.now.modes.plane.axes() {
+            let goal = &goals[axis.index()];
+            from[axis] = circle_frame(goal) - goal.way + started[axis];
+            to[axis] = circle_frame(goal) + self.now.axes[axis.index()].applied;
+        }
+        (from, to)
+    }
+
+    fn written_arc(
+        &self,
+        goals: &Goals,
+        started: &Coordinates,
+        [x, y]: [f64; 2],
+        same_ends: SameEnds,
+    ) -> WrittenArc {
+        let plane = self.now.modes.plane;
+        let (from, to) = self.written_ends(goals, started);
+        let seen = |place: &Coordinates| {
+            let [first, second] = plane.of(place);
+            [first - x, second - y]
+        };
+        WrittenArc {
+            start: seen(&from),
+            end: seen(&to),
+            steps: plane.axes().map(|axis| self.scale(axis).step()),
+            same_ends,
+        }
+    }
+
+    /// What the control will find in what was written: radii at both ends, and the angle between them.
+    fn check_written(
+        &self,
+        goals: &Goals,
+        started: &Coordinates,
+        centre: [f64; 2],
         circle: &Circle,
     ) -> Result<(), Found> {
-        let axes = self.now.modes.plane.axes();
-        let mut start = [0.0; 2];
-        let mut end = [0.0; 2];
-        for (index, axis) in axes.into_iter().enumerate() {
-            let goal = &goals[axis.index()];
-            let to = circle_frame(goal);
-            start[index] = to - goal.way + started[axis] - circle.centre[index];
-            end[index] = to + self.now.axes[axis.index()].applied - circle.centre[index];
-        }
-        let (start_mm, end_mm) = (start[0].hypot(start[1]), end[0].hypot(end[1]));
+        let written = self.written_arc(goals, started, centre, SameEnds::FullCircle);
+        let [start_mm, end_mm] = written.radii();
         let tolerance_mm = self.known.radius_tolerance_mm;
         if (start_mm - end_mm).abs() > tolerance_mm {
             return Err((
@@ -481,7 +512,9 @@ impl Task<'_> {
                 }),
             ));
         }
-        Ok(())
+        written
+            .check_sweep(circle.sweep)
+            .map_err(|reason| (self.at(), reason))
     }
 }
 
@@ -491,6 +524,12 @@ fn circle_frame(goal: &super::Goal) -> f64 {
 }
 
 impl Circle {
+    /// One or more whole turns.
+    fn is_full(&self) -> bool {
+        let turns = self.sweep.abs() / TAU;
+        turns.round() >= 1.0 && (turns - turns.round()).abs() < 1e-9
+    }
+
     /// R of the control: negative for more than half of a circle.
     fn signed_radius(&self) -> f64 {
         if self.sweep.abs() > std::f64::consts::PI {

@@ -105,6 +105,7 @@ impl Task<'_> {
                     value,
                     base: value,
                     word: goal.word,
+                    exact: false,
                     scale,
                 };
                 let applied = self.now.axes[axis.index()].applied;

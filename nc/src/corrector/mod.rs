@@ -17,6 +17,7 @@ mod straight;
 mod stream;
 mod words;
 mod write;
+mod written_arc;
 
 pub use known::SetupError;
 pub use refusal::{Lost, Missing, Reason, Refusal, Within};
@@ -173,6 +174,7 @@ impl Corrector {
             edits: &mut self.edits,
             before: &mut self.before,
             after: &mut self.after,
+            counts_anew: false,
         };
         task.run()?;
         self.put(bytes, out);
@@ -234,14 +236,18 @@ struct Task<'a> {
     before: &'a mut Vec<u8>,
     /// Blocks behind it.
     after: &'a mut Vec<u8>,
+    /// Words count otherwise than before the block.
+    counts_anew: bool,
 }
 
 impl Task<'_> {
     fn run(&mut self) -> Result<(), Found> {
         self.note_blanks();
         self.check_assignments()?;
-        let compensated = self.now.modes.compensation;
+        let modes = self.now.modes;
+        let compensated = modes.compensation;
         self.settle()?;
+        self.counts_anew |= !self.now.modes.count_as(&modes);
         let compensated = compensated || self.now.modes.compensation;
         if let Some((meaning, word)) = self.said.taker {
             self.take(meaning, word)?;

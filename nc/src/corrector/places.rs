@@ -22,6 +22,8 @@ pub(super) struct Goal {
     pub word: Option<usize>,
     /// The word is a way.
     pub as_way: bool,
+    /// Its word says the place to the last digit, not to half a step alone.
+    pub exact: bool,
     /// Why its place is unknown, where it is.
     pub lost: Lost,
 }
@@ -78,6 +80,7 @@ impl Task<'_> {
             way: 0.0,
             word: None,
             as_way: self.now.modes.incremental,
+            exact: false,
             lost: state.lost,
         })
     }
@@ -219,6 +222,7 @@ impl Task<'_> {
         let state = &mut self.now.axes[index];
         let same = state.offsets[Offset::Tool as usize].value == part.value && part.value.is_some();
         state.set(Offset::Tool, part);
+        self.counts_anew |= !same;
         if !same && !stands {
             state.machine = None;
             state.program = None;

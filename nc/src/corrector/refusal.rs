@@ -175,6 +175,13 @@ pub enum Reason {
         /// By how much at least, mm.
         off_mm: f64,
     },
+    /// The control would turn through another angle, the ends being in whole steps.
+    Sweep {
+        /// As the program means it, without whole turns.
+        meant_deg: f64,
+        /// As the control would.
+        found_deg: f64,
+    },
     /// A cycle, spline or thread whose correction changes along it.
     Changes {
         /// What it is.
@@ -206,6 +213,8 @@ pub enum Within {
     InverseTime,
     /// The block has words that act when its movement has ended.
     AfterMotion,
+    /// A piece before the block would be read in the modes and offsets of before.
+    BeforeMotion,
 }
 
 impl From<Flaw> for Reason {
@@ -246,6 +255,7 @@ impl Reason {
             Self::NotSplit { within, .. } => within.advice().into(),
             Self::ArcStart { .. } => "lead in with a straight movement".into(),
             Self::RadiusForm { .. } => "write the arc with I, J and K instead of R".into(),
+            Self::Sweep { .. } => "write a short arc as a line, a full circle as two arcs".into(),
             Self::Changes { .. } => "write it as single movements, or raise the tolerance".into(),
             _ => return None,
         })
@@ -297,6 +307,9 @@ impl Within {
             Self::Profile => "raise the tolerance or shorten the movements of the profile",
             Self::InverseTime => "program the feed by G94, or shorten the movement",
             Self::AfterMotion => "put what acts after the movement into a block of its own",
+            Self::BeforeMotion => {
+                "put the codes that say how words count into a block of their own"
+            }
         }
     }
 }
@@ -398,6 +411,7 @@ impl fmt::Display for Reason {
                     Within::Profile => "in the profile of a cycle",
                     Within::InverseTime => "where F is an inverse time",
                     Within::AfterMotion => "with words that act after the movement",
+                    Within::BeforeMotion => "with codes that change how its words count",
                 }
             ),
             Self::Path(error) => error.fmt(f),
@@ -410,6 +424,13 @@ impl fmt::Display for Reason {
                     "with R in whole steps the centre of the corrected arc would be {off_mm:.4} mm off"
                 )
             }
+            Self::Sweep {
+                meant_deg,
+                found_deg,
+            } => write!(
+                f,
+                "with its ends in whole steps the arc of {meant_deg:.4} degrees turns through {found_deg:.0} degrees for the control"
+            ),
             Self::Changes { what, share } => {
                 write!(
                     f,

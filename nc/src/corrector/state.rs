@@ -194,6 +194,22 @@ impl Modes {
         return_to_retract: false,
         work: 540,
     };
+
+    /// True where the words of a line count as they do in other modes.
+    pub fn count_as(&self, other: &Self) -> bool {
+        let of = |modes: &Self| {
+            let Self {
+                inches,
+                incremental,
+                diameter,
+                inverse_time,
+                work,
+                ..
+            } = *modes;
+            (inches, incremental, diameter, inverse_time, work)
+        };
+        of(self) == of(other)
+    }
 }
 
 /// All axes.

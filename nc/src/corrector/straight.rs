@@ -157,19 +157,22 @@ impl Task<'_> {
             let goals = part_of(goals, &end, &from, &leg.to);
             let arc = leg.circle.is_some();
             if index == host {
-                if index > 0 {
+                if !self.before.is_empty() {
+                    self.check_before(legs.len())?;
                     self.name_motion()?;
                 }
                 self.say_leg(&goals, leg)?;
+                in_force = Some(arc);
             } else {
                 let code = if in_force == Some(arc) {
                     None
                 } else {
                     self.code_for(arc, index < host)
                 };
-                self.beside(&goals, leg, code, index < host)?;
+                if self.beside(&goals, leg, code, index < host)? {
+                    in_force = Some(arc);
+                }
             }
-            in_force = Some(arc);
             from = leg.to;
         }
         // What follows relies on the movement's own code.
@@ -183,21 +186,37 @@ impl Task<'_> {
         Ok(())
     }
 
+    /// A block before this one is read in the modes and with the offsets of before.
+    fn check_before(&self, pieces: usize) -> Result<(), Found> {
+        let within = self.counts_anew.then_some(Within::BeforeMotion);
+        self.check_pieces(pieces, within)
+    }
+
     fn say_leg(&mut self, goals: &Goals, leg: &Leg) -> Result<(), Found> {
         match &leg.circle {
             None => self.say(goals, &leg.k, self.named()),
-            Some(circle) => self.say_circle(goals, &leg.k, circle),
+            Some(circle) => {
+                let plane = self.now.modes.plane.axes();
+                let moves = plane.iter().any(|axis| goals[axis.index()].way != 0.0);
+                let plane = if moves {
+                    plane.into_iter().collect()
+                } else {
+                    AxisSet::NONE
+                };
+                let force = self.named().union(plane);
+                self.say_circle(goals, &leg.k, circle, force)
+            }
         }
     }
 
-    /// A block beside the one of the program.
+    /// A block beside the one of the program; false where no word of it would be another.
     fn beside(
         &mut self,
         goals: &Goals,
         leg: &Leg,
         code: Option<u16>,
         before: bool,
-    ) -> Result<(), Found> {
+    ) -> Result<bool, Found> {
         let mut text = std::mem::take(if before {
             &mut *self.before
         } else {
@@ -234,7 +253,8 @@ impl Task<'_> {
         if let Some(circle) = &leg.circle {
             self.add_circle(goals, &started, circle, &mut text)?;
         }
-        if text.len() == begun {
+        let is_needed = text.len() > begun;
+        if !is_needed {
             text.truncate(start);
         } else {
             if before {
@@ -248,7 +268,7 @@ impl Task<'_> {
             &mut *self.after
         }) = text;
         self.arrive(goals);
-        Ok(())
+        Ok(is_needed)
     }
 
     /// A line before the block may need the feed that the block brings.

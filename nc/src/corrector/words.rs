@@ -8,6 +8,9 @@ use super::write::{Scale, default_style, number};
 use crate::block::Number;
 use crate::coordinates::{Axis, AxisSet};
 
+/// Numbers nearer to each other than this, mm or degrees, are one: sums of them differ in their last bits.
+const EXACT: f64 = 1e-9;
+
 /// A word to be written.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
@@ -18,6 +21,8 @@ pub(super) struct Wanted {
     pub base: f64,
     /// The word of the block whose style it has.
     pub word: Option<usize>,
+    /// To the last digit: a word that says it to half a step is written anew.
+    pub exact: bool,
     pub scale: Scale,
 }
 
@@ -68,6 +73,7 @@ impl Task<'_> {
             value: base + k,
             base,
             word: goal.word,
+            exact: goal.exact,
             scale,
         }))
     }
@@ -75,6 +81,11 @@ impl Task<'_> {
     /// Writes a word into the block, if it does not say it already; how far the control stands from the goal then.
     pub fn write_axis(&mut self, axis: Axis, wanted: &Wanted) -> Result<(), Found> {
         let written = match wanted.word {
+            Some(word) if wanted.exact => {
+                self.rewrite_unless(word, wanted.value, &wanted.scale, |says| {
+                    (says - wanted.value).abs() < EXACT
+                })?
+            }
             Some(word) => self.rewrite(word, wanted.value, &wanted.scale)?,
             None => self.insert(axis, wanted)?,
         };
@@ -82,15 +93,25 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Gives a word another value; what it says then.
+    /// Gives a word another value, if it does not say it to half a step; what it says then.
     pub fn rewrite(&mut self, index: usize, value: f64, scale: &Scale) -> Result<f64, Found> {
+        self.rewrite_unless(index, value, scale, |says| scale.says(says, value))
+    }
+
+    fn rewrite_unless(
+        &mut self,
+        index: usize,
+        value: f64,
+        scale: &Scale,
+        stays: impl FnOnce(f64) -> bool,
+    ) -> Result<f64, Found> {
         let word = &self.block.words[index];
         let at = word.span().start;
         let Some(style) = word.number() else {
             return Err((at, Reason::Expression(char::from(word.letter))));
         };
         let says = scale.read(style);
-        if scale.says(says, value) {
+        if stays(says) {
             return Ok(says);
         }
         let found = |reason| (at, reason);

@@ -9,7 +9,7 @@ pub use corrected::{ArcPiece, Piece, corrected};
 
 use super::PathError;
 use crate::coordinates::{Axis, Coordinates};
-use crate::terms::Approach;
+use crate::terms::{Approach, ROUNDING};
 
 /// The plane of an arc.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,6 +81,11 @@ fn polar([x, y]: [f64; 2], centre: [f64; 2]) -> (f64, f64) {
     (dx.hypot(dy), dy.atan2(dx))
 }
 
+fn is_one_place(plane: Plane, one: &Coordinates, other: &Coordinates) -> bool {
+    let ([ax, ay], [bx, by]) = (plane.of(one), plane.of(other));
+    (bx - ax).hypot(by - ay) <= SAME_MM
+}
+
 impl Arc {
     /// An arc with its centre given (I, J, K resolved to a place in the plane). Ends where it starts: a full circle. `turns` is
     /// the number of times the end is reached, 1 for an ordinary arc (LinuxCNC's P).
@@ -110,9 +115,7 @@ impl Arc {
                 tolerance_mm: radius_tolerance_mm,
             });
         }
-        let [ax, ay] = plane.of(&from);
-        let [bx, by] = plane.of(&to);
-        let forward = if (bx - ax).hypot(by - ay) <= SAME_MM {
+        let forward = if is_one_place(plane, &from, &to) {
             TAU
         } else if clockwise {
             (start_angle - end_angle).rem_euclid(TAU)
@@ -176,6 +179,12 @@ impl Arc {
         Self::from_centre(plane, from, to, centre, clockwise, turns, f64::INFINITY)
     }
 
+    /// True where it ends where it starts: one or more full circles.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        is_one_place(self.plane, &self.from, &self.to)
+    }
+
     /// The place at a fraction of the way, 0 to 1.
     #[must_use]
     pub fn at(&self, fraction: f64) -> Coordinates {
@@ -200,8 +209,9 @@ impl Arc {
         let mut by = self.to - self.from;
         let (sin, cos) = (self.start_angle + fraction * self.sweep).sin_cos();
         let [first, second] = self.plane.axes();
-        by[first] = -sin * self.sweep;
-        by[second] = cos * self.sweep;
+        let way = self.radii[0].max(self.radii[1]) * self.sweep;
+        by[first] = -sin * way;
+        by[second] = cos * way;
         before.after(&by)
     }
 
@@ -218,7 +228,8 @@ impl Arc {
         self.approach(f64::midpoint(last, 1.0), before)
     }
 
-    /// Fractions of the way at which an axis of the plane turns round.
+    /// Fractions of the way at which an axis of the plane turns round. One that goes no farther than rounding of the program's
+    /// numbers explains, before the first or after the last of them, does not.
     #[must_use]
     pub fn turns_round(&self, axis: Axis) -> Vec<f64> {
         let zero = match self.plane.axes().iter().position(|one| *one == axis) {
@@ -226,7 +237,12 @@ impl Arc {
             Some(_) => PI / 2.0,
             None => return Vec::new(),
         };
-        self.angles(&[zero, zero + PI])
+        let mut all = self.angles(&[zero, zero + PI]);
+        // r·(1 − cos α) is how far the axis goes over an angle α before or behind the turning point.
+        let radius = self.radii[0].max(self.radii[1]);
+        let least = (1.0 - ROUNDING / radius).max(-1.0).acos() / self.sweep.abs();
+        all.retain(|fraction| (least..=1.0 - least).contains(fraction));
+        all
     }
 
     /// Fractions of the way at which a coordinate has a value.

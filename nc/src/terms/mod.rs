@@ -19,8 +19,9 @@ pub use error::{TermError, Trouble};
 
 use crate::coordinates::{AXES, Axis, AxisSet, Coordinates};
 
-/// So far beyond the ends of a table, mm or degrees, its end still counts: rounding of a sum puts a place there, no program does.
-const ROUNDING: f64 = 1e-6;
+/// What rounding of a sum brings about and no program, mm or degrees: so far beyond the ends of a table its end still counts, and
+/// an axis that goes by less stands still.
+pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// A value within a table's range, rounding put right; none beyond it, or where it is no number.
 fn in_range(value: f64, (first, last): (f64, f64)) -> Option<f64> {
@@ -63,9 +64,9 @@ impl Approach {
     #[must_use]
     pub fn after(mut self, by: &Coordinates) -> Self {
         for (axis, difference) in by.iter() {
-            if difference > 0.0 {
+            if difference > ROUNDING {
                 self = self.with(axis, Direction::Up);
-            } else if difference < 0.0 {
+            } else if difference < -ROUNDING {
                 self = self.with(axis, Direction::Down);
             }
         }
