@@ -37,6 +37,40 @@ pub struct MachineState {
     pub radius_tolerance_mm: Option<f64>,
 }
 
+impl MachineState {
+    /// All places and offsets with their keys.
+    pub(crate) fn all_places(&self) -> impl Iterator<Item = (Vec<String>, &Places)> {
+        let key = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        let WorkOffsets {
+            origins,
+            external,
+            shift,
+            ..
+        } = &self.work_offsets;
+        let single = [
+            (key(&["start"]), &self.start),
+            (key(&["tool_change"]), &self.tool_change),
+            (key(&["work_offsets", "external"]), external),
+            (key(&["work_offsets", "shift"]), shift),
+        ];
+        let origins = origins
+            .iter()
+            .map(move |(name, places)| (key(&["work_offsets", "origins", name]), places));
+        let references = self
+            .references
+            .iter()
+            .map(move |(name, places)| (key(&["references", name]), places));
+        let tools = self.tools.iter().map(move |(number, tool)| {
+            (key(&["tools", &number.to_string(), "offset"]), &tool.offset)
+        });
+        single
+            .into_iter()
+            .chain(origins)
+            .chain(references)
+            .chain(tools)
+    }
+}
+
 /// Origins of workpieces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

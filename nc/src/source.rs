@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use serde::de::DeserializeOwned;
+use toml::de::DeTable;
 
 /// A place in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,6 +77,22 @@ pub fn read_toml<T: DeserializeOwned>(text: &str) -> Result<T, Complaint> {
     })
 }
 
+/// Where the value of a key stands in a TOML text, `["control", "start", "X"]`; where it is not there, the nearest table around it.
+#[must_use]
+pub fn span_of(text: &str, key: &[&str]) -> Range<usize> {
+    let (root, _) = DeTable::parse_recoverable(text);
+    let mut span = 0..0;
+    let mut table = Some(root.get_ref());
+    for name in key {
+        let Some(value) = table.and_then(|table| table.get(*name)) else {
+            break;
+        };
+        span = value.span();
+        table = value.get_ref().as_table();
+    }
+    span
+}
+
 #[cfg(test)]
 mod tests {
     use serde::Deserialize;
@@ -94,6 +111,17 @@ mod tests {
         assert_eq!(place(3), (1, 3));
         assert_eq!(place(4), (2, 1));
         assert_eq!(place(99), (2, 3));
+    }
+
+    #[test]
+    fn a_key_is_found_by_its_path() {
+        let text = "a = 1\n[control]\nstart = { X = 2 }\n[control.tools.3]\nlength = 5\n";
+        let at = |key: &[&str]| &text[span_of(text, key)];
+        assert_eq!(at(&["control", "start", "X"]), "2");
+        assert_eq!(at(&["control", "start", "Y"]), "{ X = 2 }");
+        assert_eq!(at(&["control", "tools", "3", "length"]), "5");
+        assert_eq!(at(&["a", "b"]), "1");
+        assert_eq!(at(&["c"]), "");
     }
 
     #[test]

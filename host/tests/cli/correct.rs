@@ -165,7 +165,7 @@ fn mistakes_of_the_command_line_and_the_setup_are_told() {
         (
             1,
             "correct part.ngc --setup offset.toml",
-            &["offset.toml: control.work_offsets", "G12"],
+            &["offset.toml:5:15: control.work_offsets.origins.G12"],
         ),
         (
             1,

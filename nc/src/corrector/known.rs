@@ -13,15 +13,36 @@ use crate::dialect::{Code, Dialect, Meaning};
 use crate::machine_state::{MachineState, Places, Tool};
 use crate::path::Tolerance;
 use crate::path::arc::Plane;
+use crate::setup::CONTROL;
+use crate::source::{Complaint, span_of};
 use crate::terms::{Approach, Shape, Terms};
 
 /// What the machine's state says and the dialect does not know.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SetupError(String);
+pub struct SetupError {
+    /// Key of the value within the machine's state.
+    key: Vec<String>,
+    message: String,
+}
+
+impl SetupError {
+    fn new(key: &[&str], message: String) -> Self {
+        let key = key.iter().map(|&name| name.to_owned()).collect();
+        Self { key, message }
+    }
+
+    /// The same with its place in the text of a setup, which has the machine's state under `control`.
+    #[must_use]
+    pub fn in_setup(&self, text: &str) -> Complaint {
+        let key = self.key.iter().map(String::as_str);
+        let key: Vec<&str> = [CONTROL].into_iter().chain(key).collect();
+        Complaint::at(text, &span_of(text, &key), format!("{CONTROL}.{self}"))
+    }
+}
 
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        write!(f, "{}: {}", self.key.join("."), self.message)
     }
 }
 
@@ -60,7 +81,7 @@ impl Known {
         let mut origins = BTreeMap::new();
         for (name, places) in &state.work_offsets.origins {
             origins.insert(
-                work_offset(&dialect, name)?,
+                work_offset(&dialect, name, &["work_offsets", "origins", name])?,
                 origin(places, &state.work_offsets.external),
             );
         }
@@ -72,10 +93,8 @@ impl Known {
             );
             let tenths = code_named(&dialect, name).filter(|_| reference);
             let Some((_, tenths)) = tenths else {
-                return Err(SetupError(format!(
-                    "references.{name}: {name} goes to no reference in dialect {}",
-                    dialect.name()
-                )));
+                let message = format!("{name} goes to no reference in dialect {}", dialect.name());
+                return Err(SetupError::new(&["references", name], message));
             };
             references.insert(tenths, places.clone());
         }
@@ -116,7 +135,7 @@ impl Known {
             modes.diameter = diameter;
         }
         if let Some(active) = &state.work_offsets.active {
-            modes.work = work_offset(&self.dialect, active)?;
+            modes.work = work_offset(&self.dialect, active, &["work_offsets", "active"])?;
         }
         let mut axes = NOWHERE;
         for axis in Axis::ALL {
@@ -212,13 +231,13 @@ fn code_named(dialect: &Dialect, name: &str) -> Option<(Code, u16)> {
     Some((code, u16::try_from(number.tenths()?).ok()?))
 }
 
-fn work_offset(dialect: &Dialect, name: &str) -> Result<u16, SetupError> {
+fn work_offset(dialect: &Dialect, name: &str, key: &[&str]) -> Result<u16, SetupError> {
     match code_named(dialect, name) {
         Some((Code::WorkOffset(tenths), _)) => Ok(tenths),
-        _ => Err(SetupError(format!(
-            "work_offsets: {name} is no work offset of dialect {}",
-            dialect.name()
-        ))),
+        _ => {
+            let message = format!("{name} is no work offset of dialect {}", dialect.name());
+            Err(SetupError::new(key, message))
+        }
     }
 }
 

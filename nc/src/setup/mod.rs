@@ -6,18 +6,23 @@ mod terms;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::checks::within;
+use crate::checks::{within, within_at};
 use crate::coordinates::AxisSet;
 use crate::dialect::Dialect;
-use crate::machine_state::{MachineState, Places};
+use crate::machine_state::MachineState;
 use crate::path::Tolerance;
-use crate::source::{Complaint, Place, read_toml};
+use crate::source::{Complaint, Place, read_toml, span_of};
 use crate::terms::Terms;
 
 pub use owner::Owner;
 
 /// Finest and coarsest tolerance that is believed, mm or degrees.
 const TOLERANCES: (f64, f64) = (1e-5, 1.0);
+
+/// Largest radius of a tool that is believed, mm.
+const LARGEST_RADIUS_MM: f64 = 1000.0;
+/// The table of the machine's state.
+pub(crate) const CONTROL: &str = "control";
 
 /// What a correction needs to know besides the program.
 #[derive(Debug)]
@@ -42,7 +47,7 @@ struct SetupFile {
     tolerance_deg: Option<Spanned<f64>>,
     screw_map: Option<Spanned<owner::OwnerFile>>,
     #[serde(default)]
-    control: Option<Spanned<MachineState>>,
+    control: MachineState,
     #[serde(default)]
     terms: terms::TermsFile,
 }
@@ -132,26 +137,46 @@ fn named_dialect(
     })
 }
 
-fn control(text: &str, file: Option<Spanned<MachineState>>) -> Result<MachineState, Complaint> {
-    let Some(file) = file else {
-        return Ok(MachineState::default());
-    };
-    let span = file.span();
-    let state = file.into_inner();
-    let places = [&state.start, &state.tool_change]
-        .into_iter()
-        .chain([&state.work_offsets.external, &state.work_offsets.shift])
-        .chain(state.work_offsets.origins.values())
-        .chain(state.references.values())
-        .chain(state.tools.values().map(|tool| &tool.offset));
-    for (axis, value) in places.flat_map(Places::iter) {
-        let key = format!("control: {axis}");
-        let far = crate::checks::FARTHEST;
-        crate::checks::within_at(text, &span, &key, *value, (-far, far), axis.unit())?;
+/// The machine's state, its numbers checked.
+fn control(text: &str, state: MachineState) -> Result<MachineState, Complaint> {
+    let far = crate::checks::FARTHEST;
+    for (key, places) in state.all_places() {
+        for (axis, value) in places {
+            let letter = axis.letter().to_string();
+            let path: Vec<&str> = key.iter().map(String::as_str).chain([&*letter]).collect();
+            in_control(text, &path, &letter, *value, (-far, far), axis.unit())?;
+        }
+    }
+    for (number, tool) in &state.tools {
+        if let Some(radius) = tool.radius_mm {
+            let path = ["tools", &number.to_string(), "radius_mm"];
+            in_control(
+                text,
+                &path,
+                "radius_mm",
+                radius,
+                (0.0, LARGEST_RADIUS_MM),
+                "mm",
+            )?;
+        }
     }
     if let Some(radius) = state.radius_tolerance_mm {
         let key = "radius_tolerance_mm";
-        crate::checks::within_at(text, &span, key, radius, (0.0, 1.0), "mm")?;
+        in_control(text, &[key], key, radius, (0.0, 1.0), "mm")?;
     }
     Ok(state)
+}
+
+/// A number under `control` within bounds.
+fn in_control(
+    text: &str,
+    path: &[&str],
+    key: &str,
+    number: f64,
+    range: (f64, f64),
+    unit: &str,
+) -> Result<(), Complaint> {
+    let path: Vec<&str> = [CONTROL].iter().chain(path).copied().collect();
+    let key = format!("{CONTROL}: {key}");
+    within_at(text, &span_of(text, &path), &key, number, range, unit).map(|_| ())
 }

@@ -193,7 +193,7 @@ fn a_state_the_dialect_does_not_know_is_refused() {
     let error = Corrector::new(dialect(), &state, Terms::none(), TOLERANCE).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "work_offsets: G7 is no work offset of dialect linuxcnc-mill"
+        "work_offsets.active: G7 is no work offset of dialect linuxcnc-mill"
     );
     let mut state = control();
     state.references.insert("G54".into(), state.start.clone());

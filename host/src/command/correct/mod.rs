@@ -113,10 +113,8 @@ fn corrector(args: &CorrectArgs) -> Result<(Corrector, Vec<Largest>), CommandErr
     } else {
         (terms, Vec::new())
     };
-    let corrector =
-        Corrector::new(dialect, &setup.control, terms, setup.tolerance).map_err(|error| {
-            CommandError::Data(format!("{}: control.{error}", args.setup.display()))
-        })?;
+    let corrector = Corrector::new(dialect, &setup.control, terms, setup.tolerance)
+        .map_err(|error| CommandError::content(&args.setup)(error.in_setup(&text)))?;
     Ok((corrector, largest))
 }
 
