@@ -6,7 +6,7 @@ use super::refusal::{Lost, Reason};
 use super::state::{AxisState, Motion, Offset, Part, axis};
 use super::{Profile, Task};
 use crate::coordinates::{AXES, Axis};
-use crate::dialect::{Code, Meaning, ToolSelection};
+use crate::dialect::{Code, Letter, Meaning, ToolSelection};
 use crate::machine_state::Tool;
 
 /// Parameters of LinuxCNC below this number hang on nothing.
@@ -35,6 +35,7 @@ impl Task<'_> {
     /// All codes that come into force before anything moves, in the order in which controls take them.
     pub fn settle(&mut self) -> Result<(), Found> {
         self.check_diameter()?;
+        self.check_length_alone()?;
         self.select_tool()?;
         if let Some((meaning, _)) = self.said.cancel {
             self.now.modes.motion = match meaning {
@@ -96,6 +97,38 @@ impl Task<'_> {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// Where H is modal, H alone brings another length into force.
+    fn check_length_alone(&self) -> Result<(), Found> {
+        let dialect = &self.known.dialect;
+        if dialect.length_of_tool_in_use() || dialect.letter(b'H') != Letter::Parameter {
+            return Ok(());
+        }
+        let in_force = self.now.offset_of.flatten().filter(|number| *number != 0);
+        let Some(number) = in_force.filter(|_| parameter(self.block, b'H') != Said::Nothing) else {
+            return Ok(());
+        };
+        let named = self.said.settings.iter().any(|(code, _)| {
+            matches!(
+                code,
+                Code::Of(
+                    Meaning::ToolLength
+                        | Meaning::ToolLengthNegative
+                        | Meaning::ToolLengthAdded
+                        | Meaning::ToolLengthOff
+                )
+            )
+        });
+        if named || count(self.block, b'H') == Some(number) {
+            return Ok(());
+        }
+        let word = self.block.words.iter().position(|word| word.letter == b'H');
+        let what = "H alone brings another tool length into force: write G43 or G44 beside it";
+        Err((
+            word.map_or(0, |word| self.start_of(word)),
+            Reason::Unsupported(what),
+        ))
     }
 
     fn select_tool(&mut self) -> Result<(), Found> {
@@ -170,7 +203,8 @@ impl Task<'_> {
 
     fn set_tool_length(&mut self, meaning: Meaning, _word: usize) -> Result<(), Found> {
         let number = match parameter(self.block, b'H') {
-            Said::Nothing => self.now.tool,
+            Said::Nothing if self.known.dialect.length_of_tool_in_use() => self.now.tool,
+            Said::Nothing => None,
             Said::Number(_) | Said::Unknown => count(self.block, b'H'),
         };
         match meaning {

@@ -44,6 +44,7 @@ impl<'a> Builder<'a> {
             local_is_shift: file.axes.local_is_shift,
             tools: file.tools.selection,
             offsets_stand_still: file.tools.offsets_stand_still,
+            length_of_tool_in_use: file.tools.length_of_tool_in_use,
         };
         dialect.letters[usize::from(b'G')] = Letter::G;
         dialect.letters[usize::from(b'M')] = Letter::M;

@@ -102,6 +102,9 @@ pub(super) struct Tools {
     /// Taking an offset does not move the axes: their coordinates change.
     #[serde(default)]
     pub offsets_stand_still: bool,
+    /// A tool length without H is that of the tool in use, and H alone does nothing; else H is modal.
+    #[serde(default)]
+    pub length_of_tool_in_use: bool,
 }
 
 #[derive(Debug, Deserialize)]

@@ -72,6 +72,7 @@ pub struct Dialect {
     local_is_shift: bool,
     tools: ToolSelection,
     offsets_stand_still: bool,
+    length_of_tool_in_use: bool,
 }
 
 impl Dialect {
@@ -160,6 +161,12 @@ impl Dialect {
     #[must_use]
     pub const fn offsets_stand_still(&self) -> bool {
         self.offsets_stand_still
+    }
+
+    /// True where a tool length without H is that of the tool in use, and H alone does nothing.
+    #[must_use]
+    pub const fn length_of_tool_in_use(&self) -> bool {
+        self.length_of_tool_in_use
     }
 
     /// What a letter is.
