@@ -75,7 +75,7 @@ impl Task<'_> {
         let Known {
             terms, tolerance, ..
         } = &*self.known;
-        let started = self.started_with(from)?;
+        let started = self.started_with(&self.correction_here(from)?);
         let found = |error| (self.at(), Reason::Path(error));
         match corrected(arc, &started, terms, with, tolerance) {
             Ok(pieces) => Ok(pieces.into_iter().map(leg).collect()),
@@ -225,17 +225,16 @@ impl Task<'_> {
         Ok(said + origin)
     }
 
-    /// K that the control stands with, the remainders of rounding left out.
-    pub fn started_with(&self, from: &Coordinates) -> Result<Coordinates, Found> {
-        let k = self.correction(from, &self.standing_circumstances(), self.at())?;
+    /// K that the control stands with where K is `here`: the remainders of rounding are left out.
+    pub fn started_with(&self, here: &Coordinates) -> Coordinates {
         let applied = self.applied();
         let mut started = applied;
         for axis in Axis::ALL {
-            if self.scale(axis).says(applied[axis], k[axis]) {
-                started[axis] = k[axis];
+            if self.scale(axis).says(applied[axis], here[axis]) {
+                started[axis] = here[axis];
             }
         }
-        Ok(started)
+        started
     }
 
     /// True where a line has to lead to the start of a full circle under one K everywhere: it ends where it begins, so there is no

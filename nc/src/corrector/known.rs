@@ -155,6 +155,7 @@ impl Known {
             scales: Scales::new(&self.dialect, &modes),
             axes,
             approach: Approach::UNKNOWN,
+            last_k: None,
             tool: state.tool,
             selected: state.tool,
             offset_of: state.tool_offset.map(Some),

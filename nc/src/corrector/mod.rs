@@ -34,7 +34,7 @@ use crate::coordinates::{AXES, Coordinates};
 use crate::dialect::Dialect;
 use crate::machine_state::MachineState;
 use crate::path::Tolerance;
-use crate::terms::{Approach, Shape, Terms};
+use crate::terms::{Approach, Circumstances, Shape, Terms};
 
 /// Corrects the blocks of one program, one after the other.
 #[derive(Debug)]
@@ -57,6 +57,8 @@ struct Now {
     scales: Scales,
     axes: AxisStates,
     approach: Approach,
+    /// The last K that was worked out for the end of a line: mostly the one of where the next begins.
+    last_k: Option<(Coordinates, Circumstances, Coordinates)>,
     /// Tool in use.
     tool: Option<u32>,
     /// Tool that the next change takes.

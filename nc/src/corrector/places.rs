@@ -140,6 +140,15 @@ impl Task<'_> {
         k.map_err(|error| (at, Reason::Path(PathError::Term(error))))
     }
 
+    /// K at a place with what it depends on as it is now.
+    pub fn correction_here(&self, place: &Coordinates) -> Result<Coordinates, Found> {
+        let with = self.standing_circumstances();
+        match &self.now.last_k {
+            Some((last, last_with, k)) if last == place && *last_with == with => Ok(*k),
+            _ => self.correction(place, &with, self.at()),
+        }
+    }
+
     /// What is missing to know a place.
     pub fn unknown(&self, axis: Axis, goal: &Goal) -> Reason {
         if goal.program.is_none() {

@@ -1,6 +1,7 @@
 //! Straight movements: positioning, lines, threads, probing, splines.
 
 use super::instruction::Found;
+use super::known::Known;
 use super::places::Goals;
 use super::refusal::{Lost, Reason, Within};
 use super::{Task, arcs};
@@ -61,7 +62,19 @@ impl Task<'_> {
         }
         let (from, to) = self.ends(&goals)?;
         let with = self.circumstances(&goals);
-        let started = self.started_with(&from)?;
+        let here = self.correction_here(&from)?;
+        let started = self.started_with(&here);
+        let at_start = if with == self.standing_circumstances() {
+            here
+        } else {
+            self.correction(&from, &with, self.at())?
+        };
+        let Known {
+            terms, tolerance, ..
+        } = &*self.known;
+        if line::is_short(&from, &to, &started, &at_start, terms, tolerance) {
+            return self.single_to(&goals, &to, with);
+        }
         let pieces = line::split(
             &from,
             &to,
@@ -91,17 +104,23 @@ impl Task<'_> {
     pub fn ends(&self, goals: &Goals) -> Result<(Coordinates, Coordinates), Found> {
         let at = self.at();
         let to = self.place(goals, at)?;
-        self.place(&self.standing(), at)?;
+        let mut from = to;
         let direct = self.said.machine_coordinates.is_some();
         for (axis, goal) in Axis::ALL.into_iter().zip(goals) {
             let state = &self.now.axes[axis.index()];
-            let from = if direct { state.machine } else { state.program };
-            if goal.word.is_some() && !goal.as_way && from.is_none() {
+            let known = if direct { state.machine } else { state.program };
+            if goal.word.is_some() && !goal.as_way && known.is_none() {
                 let lost = state.lost;
                 return Err((at, Reason::Place { axis, lost }));
             }
+            from[axis] = match (state.machine, goal.machine) {
+                (Some(machine), Some(_)) => machine,
+                (None, _) if self.known.depends_on.contains(axis) => {
+                    return Err((at, self.unknown(axis, &self.standing()[axis.index()])));
+                }
+                _ => to[axis] - goal.way,
+            };
         }
-        let from = to - Coordinates::new(goals.map(|goal| goal.way));
         Ok((from, to))
     }
 
@@ -116,10 +135,20 @@ impl Task<'_> {
     pub fn single(&mut self, goals: &Goals) -> Result<(), Found> {
         let at = self.at();
         let place = self.place(goals, at)?;
-        let with = self.circumstances(goals);
-        let k = self.correction(&place, &with, at)?;
+        self.single_to(goals, &place, self.circumstances(goals))
+    }
+
+    /// The same with its place and circumstances known.
+    fn single_to(
+        &mut self,
+        goals: &Goals,
+        place: &Coordinates,
+        with: Circumstances,
+    ) -> Result<(), Found> {
+        let k = self.correction(place, &with, self.at())?;
         self.say(goals, &k, AxisSet::NONE)?;
         self.now.approach = with.approach;
+        self.now.last_k = Some((*place, with, k));
         Ok(())
     }
 

@@ -2,8 +2,8 @@
 
 use super::cubic::Deviation;
 use super::{JUMP, MAX_PIECES, PathError, Tolerance};
-use crate::coordinates::{Axis, Coordinates};
-use crate::terms::{Circumstances, Shape, Terms};
+use crate::coordinates::Coordinates;
+use crate::terms::{Circumstances, Region, Shape, Terms};
 
 /// A stretch of the line over which K is one cubic.
 struct Stretch {
@@ -176,21 +176,39 @@ impl Line<'_> {
 
     /// Fractions of the way at which K breaks, rising, the end last.
     fn breaks(&self) -> Vec<f64> {
-        let mut all: Vec<f64> = Axis::ALL
-            .into_iter()
-            .filter(|axis| self.to[*axis] != self.from[*axis])
-            .flat_map(|axis| {
-                let (from, way) = (self.from[axis], self.to[axis] - self.from[axis]);
-                self.terms
-                    .breaks(axis, self.with)
-                    .into_iter()
-                    .map(move |place| (place - from) / way)
-            })
-            .filter(|fraction| *fraction > 0.0 && *fraction < 1.0)
-            .collect();
-        all.push(1.0);
+        let mut all = vec![1.0];
+        for axis in self.terms.depends_on().iter() {
+            let (from, way) = (self.from[axis], self.to[axis] - self.from[axis]);
+            if way == 0.0 {
+                continue;
+            }
+            self.terms.breaks(axis, &mut |places| {
+                let fractions = places.iter().map(|place| (place - from) / way);
+                all.extend(fractions.filter(|fraction| *fraction > 0.0 && *fraction < 1.0));
+            });
+        }
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
     }
+}
+
+/// True where the movement stays one line however K runs between its ends: K changes so little over its length. What
+/// [`split`] finds out in more detail, for the many short lines of a program. `at_start` is K at `from` with the direction of this
+/// movement, `started_with` as there.
+///
+/// With |K′| ≤ s over a length L, K is nowhere farther from its own chord than 2·s·L·t·(1 − t) ≤ s·L/2.
+#[must_use]
+pub fn is_short(
+    from: &Coordinates,
+    to: &Coordinates,
+    started_with: &Coordinates,
+    at_start: &Coordinates,
+    terms: &Terms,
+    tolerance: &Tolerance,
+) -> bool {
+    let squares: f64 = (*to - *from).iter().map(|(_, way)| way * way).sum();
+    let bend = terms.steepness(&Region::around(from, to)).slope * squares.sqrt() / 2.0;
+    bend <= BEND * tolerance.mm.min(tolerance.degrees)
+        && tolerance.share(&(*at_start - *started_with)) <= JUMP
 }

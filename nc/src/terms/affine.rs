@@ -285,16 +285,14 @@ impl Term for Affine {
         self.coefficients.iter().map(of).fold(constant, Ord::max)
     }
 
-    fn breaks(&self, axis: Axis, _: &Circumstances) -> Vec<f64> {
-        self.coefficients
-            .iter()
-            .filter_map(|entry| match &entry.value {
-                Value::Function(table) if table.axis == axis => Some(table.places()),
-                _ => None,
-            })
-            .flatten()
-            .copied()
-            .collect()
+    fn breaks(&self, axis: Axis, found: &mut dyn FnMut(&[f64])) {
+        for entry in &self.coefficients {
+            if let Value::Function(table) = &entry.value
+                && table.axis == axis
+            {
+                found(table.places());
+            }
+        }
     }
 
     /// The sums of what each entry can do: |a·y′ + a′·o′·(y − y0)| and |2·a′·o′·y′| along a unit direction.

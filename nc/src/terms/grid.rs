@@ -215,11 +215,10 @@ impl Term for Grid {
         }
     }
 
-    fn breaks(&self, axis: Axis, _: &Circumstances) -> Vec<f64> {
-        self.over
-            .iter()
-            .find(|one| one.axis == axis)
-            .map_or_else(Vec::new, |one| one.places.clone())
+    fn breaks(&self, axis: Axis, found: &mut dyn FnMut(&[f64])) {
+        if let Some(one) = self.over.iter().find(|one| one.axis == axis) {
+            found(&one.places);
+        }
     }
 
     fn steepness(&self, _: &Region) -> Steepness {

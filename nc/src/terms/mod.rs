@@ -173,26 +173,41 @@ pub trait Term: Debug + Send + Sync {
     /// How K depends on the place.
     fn shape(&self) -> Shape;
 
-    /// Places of an axis between which K is smooth, rising, in machine coordinates at the circumstances given.
-    fn breaks(&self, _axis: Axis, _with: &Circumstances) -> Vec<f64> {
-        Vec::new()
-    }
+    /// Hands on the places of an axis between which K is smooth, machine coordinates, in any order.
+    fn breaks(&self, _axis: Axis, _found: &mut dyn FnMut(&[f64])) {}
 
     /// How fast K changes within a region.
     fn steepness(&self, within: &Region) -> Steepness;
 }
 
 /// Named terms, summed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Terms {
     list: Vec<Box<dyn Term>>,
+    // What all of them do together, asked for at every block.
+    corrects: AxisSet,
+    depends_on: AxisSet,
+    depends_on_approach_of: AxisSet,
+    shape: Shape,
+}
+
+impl Default for Terms {
+    fn default() -> Self {
+        Self::none()
+    }
 }
 
 impl Terms {
     /// No correction: K = 0 everywhere.
     #[must_use]
     pub const fn none() -> Self {
-        Self { list: Vec::new() }
+        Self {
+            list: Vec::new(),
+            corrects: AxisSet::NONE,
+            depends_on: AxisSet::NONE,
+            depends_on_approach_of: AxisSet::NONE,
+            shape: Shape::None,
+        }
     }
 
     /// With one term more.
@@ -204,12 +219,20 @@ impl Terms {
 
     /// Adds a term.
     pub fn push(&mut self, term: Box<dyn Term>) {
+        self.corrects = self.corrects.union(term.corrects());
+        self.depends_on = self.depends_on.union(term.depends_on());
+        self.depends_on_approach_of = self
+            .depends_on_approach_of
+            .union(term.depends_on_approach_of());
+        self.shape = self.shape.max(term.shape());
         self.list.push(term);
     }
 
     /// Takes over the terms of another.
-    pub fn append(&mut self, mut other: Self) {
-        self.list.append(&mut other.list);
+    pub fn append(&mut self, other: Self) {
+        for term in other.list {
+            self.push(term);
+        }
     }
 
     /// K at a place of the tool's control point in machine coordinates: to be added to the programmed coordinates.
@@ -248,20 +271,20 @@ impl Terms {
 
     /// Axes that any term can correct: the words that may be changed or added.
     #[must_use]
-    pub fn corrects(&self) -> AxisSet {
-        self.union(|term| term.corrects())
+    pub const fn corrects(&self) -> AxisSet {
+        self.corrects
     }
 
     /// Axes on whose place any term depends: what must be known.
     #[must_use]
-    pub fn depends_on(&self) -> AxisSet {
-        self.union(|term| term.depends_on())
+    pub const fn depends_on(&self) -> AxisSet {
+        self.depends_on
     }
 
     /// Axes on whose direction of approach any term depends: there K jumps where the axis turns round.
     #[must_use]
-    pub fn depends_on_approach_of(&self) -> AxisSet {
-        self.union(|term| term.depends_on_approach_of())
+    pub const fn depends_on_approach_of(&self) -> AxisSet {
+        self.depends_on_approach_of
     }
 
     /// True where any term depends on the tool or its offset.
@@ -272,20 +295,15 @@ impl Terms {
 
     /// How the sum depends on the place.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        self.iter().map(Term::shape).max().unwrap_or(Shape::None)
+    pub const fn shape(&self) -> Shape {
+        self.shape
     }
 
-    /// Places of an axis between which K is smooth, rising, none twice.
-    #[must_use]
-    pub fn breaks(&self, axis: Axis, with: &Circumstances) -> Vec<f64> {
-        let mut all: Vec<f64> = self
-            .iter()
-            .flat_map(|term| term.breaks(axis, with))
-            .collect();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        all
+    /// Hands on the places of an axis between which K is smooth, those of each term.
+    pub fn breaks(&self, axis: Axis, found: &mut dyn FnMut(&[f64])) {
+        for term in self.iter() {
+            term.breaks(axis, found);
+        }
     }
 
     /// How fast the sum changes within a region.
@@ -297,9 +315,5 @@ impl Terms {
                 slope: sum.slope + one.slope,
                 bend: sum.bend + one.bend,
             })
-    }
-
-    fn union(&self, of: impl Fn(&dyn Term) -> AxisSet) -> AxisSet {
-        self.iter().map(of).fold(AxisSet::NONE, AxisSet::union)
     }
 }

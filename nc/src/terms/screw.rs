@@ -168,11 +168,9 @@ impl Term for ScrewMap {
         }
     }
 
-    fn breaks(&self, axis: Axis, _: &Circumstances) -> Vec<f64> {
+    fn breaks(&self, axis: Axis, found: &mut dyn FnMut(&[f64])) {
         if axis == self.axis {
-            self.forward.places().to_vec()
-        } else {
-            Vec::new()
+            found(self.forward.places());
         }
     }
 

@@ -9,6 +9,8 @@ pub(super) struct Table {
     pub axis: Axis,
     places: Vec<f64>,
     values: Vec<f64>,
+    steepest: f64,
+    largest: f64,
 }
 
 impl Table {
@@ -38,8 +40,13 @@ impl Table {
                 pair[1], pair[0]
             ));
         }
+        let rises = places.windows(2).zip(values.windows(2));
         Ok(Self {
             axis,
+            steepest: rises
+                .map(|(place, value)| ((value[1] - value[0]) / (place[1] - place[0])).abs())
+                .fold(0.0, f64::max),
+            largest: values.iter().fold(0.0, |most, value| value.abs().max(most)),
             places,
             values,
         })
@@ -78,18 +85,12 @@ impl Table {
     }
 
     /// Largest change of the value for one of the place.
-    pub fn steepest(&self) -> f64 {
-        self.places
-            .windows(2)
-            .zip(self.values.windows(2))
-            .map(|(place, value)| ((value[1] - value[0]) / (place[1] - place[0])).abs())
-            .fold(0.0, f64::max)
+    pub const fn steepest(&self) -> f64 {
+        self.steepest
     }
 
     /// Largest value, without its sign.
-    pub fn largest(&self) -> f64 {
-        self.values
-            .iter()
-            .fold(0.0, |most, value| value.abs().max(most))
+    pub const fn largest(&self) -> f64 {
+        self.largest
     }
 }

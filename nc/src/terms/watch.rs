@@ -66,9 +66,9 @@ impl Term for Watched {
     fn correction(&self, at: &Coordinates, with: &Circumstances) -> Result<Coordinates, TermError> {
         let k = self.term.correction(at, with)?;
         for (axis, value) in k.iter() {
-            if value != 0.0 {
-                let bits = &self.largest.bits[axis.index()];
-                bits.fetch_max(value.abs().to_bits(), Ordering::Relaxed);
+            let (largest, bits) = (&self.largest.bits[axis.index()], value.abs().to_bits());
+            if bits > largest.load(Ordering::Relaxed) {
+                largest.fetch_max(bits, Ordering::Relaxed);
             }
         }
         Ok(k)
@@ -94,8 +94,8 @@ impl Term for Watched {
         self.term.shape()
     }
 
-    fn breaks(&self, axis: Axis, with: &Circumstances) -> Vec<f64> {
-        self.term.breaks(axis, with)
+    fn breaks(&self, axis: Axis, found: &mut dyn FnMut(&[f64])) {
+        self.term.breaks(axis, found);
     }
 
     fn steepness(&self, within: &Region) -> Steepness {

@@ -230,17 +230,16 @@ impl Fitting<'_> {
 
     /// Fractions of the part at which K breaks, rising.
     fn breaks(&self) -> Vec<f64> {
-        let mut all: Vec<f64> = self
-            .terms
-            .depends_on()
-            .iter()
-            .flat_map(|axis| {
-                let places = self.terms.breaks(axis, self.with);
-                places
-                    .into_iter()
-                    .flat_map(move |place| self.part.crosses(axis, place))
-            })
-            .collect();
+        let mut all = Vec::new();
+        for axis in self.terms.depends_on().iter() {
+            self.terms.breaks(axis, &mut |places| {
+                all.extend(
+                    places
+                        .iter()
+                        .flat_map(|place| self.part.crosses(axis, *place)),
+                );
+            });
+        }
         all.sort_by(f64::total_cmp);
         all.dedup();
         all

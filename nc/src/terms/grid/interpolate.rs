@@ -2,7 +2,7 @@
 
 use super::super::{Steepness, TermError, Trouble, in_range};
 use super::{Grid, GridAxis, MAX_OVER};
-use crate::coordinates::Coordinates;
+use crate::coordinates::{AXES, Coordinates};
 
 /// A cell along one coordinate: its lower node and how far into it, 0 to 1.
 type Cell = (usize, f64);
@@ -13,15 +13,17 @@ pub(super) fn correction(grid: &Grid, at: &Coordinates) -> Result<Coordinates, T
         *cell = locate(one, at[one.axis]).ok_or_else(|| out_of_range(grid, one, at))?;
     }
     let width = grid.corrects.len();
-    let mut sum = Coordinates::ZERO;
+    let mut sums = [0.0; AXES];
     for corner in 0..1_usize << grid.over.len() {
         let (node, weight) = corner_of(grid, &cells, corner);
         if weight != 0.0 {
             let row = &grid.values[node * width..(node + 1) * width];
-            sum += grid.vector(row) * weight;
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += value * weight;
+            }
         }
     }
-    Ok(sum)
+    Ok(grid.vector(&sums[..width]))
 }
 
 fn locate(one: &GridAxis, value: f64) -> Option<Cell> {
