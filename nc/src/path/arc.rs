@@ -194,9 +194,19 @@ impl Arc {
         if fraction >= 1.0 {
             return self.to;
         }
+        self.at_direction(fraction, self.direction(fraction))
+    }
+
+    /// From the centre to the place at a fraction of the way, of length 1.
+    fn direction(&self, fraction: f64) -> [f64; 2] {
+        let (sin, cos) = (self.start_angle + fraction * self.sweep).sin_cos();
+        [cos, sin]
+    }
+
+    /// The place at a fraction of the way, whose direction from the centre is known.
+    fn at_direction(&self, fraction: f64, [cos, sin]: [f64; 2]) -> Coordinates {
         let mut place = self.from.towards(&self.to, fraction);
         let radius = self.radii[0] + fraction * (self.radii[1] - self.radii[0]);
-        let (sin, cos) = (self.start_angle + fraction * self.sweep).sin_cos();
         let [first, second] = self.plane.axes();
         place[first] = self.centre[0] + radius * cos;
         place[second] = self.centre[1] + radius * sin;

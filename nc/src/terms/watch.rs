@@ -66,8 +66,9 @@ impl Term for Watched {
     fn correction(&self, at: &Coordinates, with: &Circumstances) -> Result<Coordinates, TermError> {
         let k = self.term.correction(at, with)?;
         for (axis, value) in k.iter() {
-            let (largest, bits) = (&self.largest.bits[axis.index()], value.abs().to_bits());
-            if bits > largest.load(Ordering::Relaxed) {
+            let bits = value.abs().to_bits();
+            let largest = &self.largest.bits[axis.index()];
+            if bits > 0 && bits > largest.load(Ordering::Relaxed) {
                 largest.fetch_max(bits, Ordering::Relaxed);
             }
         }

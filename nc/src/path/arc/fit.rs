@@ -17,8 +17,8 @@ use super::{Arc, ArcPiece};
 use crate::coordinates::{Axis, Coordinates};
 use crate::terms::{Circumstances, Region, Terms};
 
-/// Samples that the centre is fitted to.
-const FITTED: usize = 16;
+/// Samples that the centre is fitted to at least and at most: as many as leave K a tenth of the tolerance between them.
+const FITTED: (f64, f64) = (4.0, 16.0);
 /// Samples that a piece is proven with at most; one that needs more is halved.
 const MAX_SAMPLES: f64 = 4096.0;
 /// Share of the tolerance that is left to what lies between samples.
@@ -42,6 +42,8 @@ struct Candidate {
     start: Coordinates,
     /// Angle of its start about its centre.
     start_angle: f64,
+    /// How far it starts from where K puts its start, mm.
+    start_off: f64,
     /// Largest |D|.
     offset: f64,
     /// Largest slope and bend of K in the region.
@@ -65,20 +67,31 @@ impl Fitting<'_> {
         Ok(self.terms.correction(&self.part.at(fraction), self.with)?)
     }
 
-    fn direction(&self, fraction: f64) -> [f64; 2] {
-        let (sin, cos) = (self.part.start_angle + fraction * self.part.sweep).sin_cos();
-        [cos, sin]
-    }
-
     /// The centre as far from both ends, less what the program's own radii differ by, that leaves the least spread of radii.
     fn candidate(&self) -> Result<Option<Candidate>, PathError> {
         let part = self.part;
-        let mut samples = Vec::with_capacity(FITTED + 1);
-        for i in 0..=FITTED {
-            let fraction = i as f64 / FITTED as f64;
-            samples.push((self.direction(fraction), part.plane.of(&self.k(fraction)?)));
+        let steepness = self.terms.steepness(&region(part));
+        let length = part.sweep.abs() * self.speed();
+        let needed = (steepness.slope * length / (BETWEEN * self.tolerance.mm)).ceil();
+        let fitted = needed.max(FITTED.0).min(FITTED.1) as usize;
+        let mut samples = Vec::with_capacity(fitted + 1);
+        let mut ends = [Coordinates::ZERO; 2];
+        for i in 0..=fitted {
+            let fraction = i as f64 / fitted as f64;
+            let direction = part.direction(fraction);
+            let place = if i == 0 {
+                part.from
+            } else if i == fitted {
+                part.to
+            } else {
+                part.at_direction(fraction, direction)
+            };
+            let k = self.terms.correction(&place, self.with)?;
+            samples.push((direction, part.plane.of(&k)));
+            ends[usize::from(i > 0)] = k;
         }
-        let corrected = part.to + self.k(1.0)?;
+        let [start_k, end_k] = ends;
+        let corrected = part.to + end_k;
         let start = relative(part.plane.of(&self.start), part.centre);
         let end = relative(part.plane.of(&corrected), part.centre);
         let end_radius = end[0].hypot(end[1]);
@@ -94,9 +107,7 @@ impl Fitting<'_> {
         let start_angle = start[1].atan2(start[0]);
         let turned = end[1].atan2(end[0]) - start_angle;
         let sweep = turned + TAU * ((part.sweep - turned) / TAU).round();
-        let region = region(part);
-        let steepness = self.terms.steepness(&region);
-        let spacing = part.sweep.abs() / FITTED as f64 * self.speed();
+        let spacing = length / fitted as f64;
         let offset = samples
             .iter()
             .map(|(_, k)| (k[0] - shift[0]).hypot(k[1] - shift[1]))
@@ -116,6 +127,7 @@ impl Fitting<'_> {
             },
             start: self.start,
             start_angle,
+            start_off: linear_length(&(part.from + start_k - self.start)),
             offset,
             slope: steepness.slope,
             bend: steepness.bend,
@@ -172,7 +184,26 @@ impl Fitting<'_> {
         })
     }
 
+    /// A bound on what is off everywhere, without samples, mm: small where K hardly changes along the arc. With d the largest
+    /// |D| and s what the start is off, |w| and the fitted radius are both within d of r, the latter within d + s; so are their
+    /// angles but for a factor 1/r (asin x ≤ 1.1·x below 1/2), at the start, at the end and between.
+    fn everywhere(&self, candidate: &Candidate) -> f64 {
+        let part = self.part;
+        let (d, s) = (candidate.offset, candidate.start_off);
+        let radial = 2.0 * d + s;
+        let angular = 2.2 * radial / part.radii[0].min(part.radii[1]);
+        let across: f64 = self
+            .others()
+            .map(|axis| (candidate.piece.corrected[axis] - candidate.start[axis]).abs())
+            .sum();
+        let bend = candidate.slope * self.speed() * part.sweep.abs() / 2.0;
+        radial + bend + s + across * angular / candidate.piece.sweep.abs()
+    }
+
     fn is_proven(&self, candidate: &Candidate) -> Result<bool, PathError> {
+        if !self.others().any(Axis::is_rotary) && self.everywhere(candidate) <= self.tolerance.mm {
+            return Ok(true);
+        }
         let (mm, degrees) = self.second_derivatives(candidate);
         let moves_rotary = self.others().any(Axis::is_rotary);
         let rate = (mm / self.tolerance.mm).max(if moves_rotary {
@@ -244,6 +275,12 @@ impl Fitting<'_> {
         all.dedup();
         all
     }
+}
+
+/// Length over all linear axes, mm.
+fn linear_length(way: &Coordinates) -> f64 {
+    let linear = way.iter().filter(|(axis, _)| !axis.is_rotary());
+    linear.map(|(_, value)| value * value).sum::<f64>().sqrt()
 }
 
 fn relative(place: [f64; 2], to: [f64; 2]) -> [f64; 2] {
