@@ -2,22 +2,25 @@
 //!
 //! Two things are kept for each axis: where it is as the program means it, and by how much the control stands elsewhere because
 //! of the words written (`applied`). A word is written so that the block ends at the place meant plus K; as what was written
-//! before is known, rounding never adds up. `block` reads, `instruction` sorts, `settings` keeps the modes and offsets, `straight`,
-//! `arcs` and `cycles` correct, `words` and `write` put numbers back.
+//! before is known, rounding never adds up. `block` reads, `instruction` sorts, `task` runs, `settings`, `tools` and `takers` keep modes and
+//! offsets, `straight`, `arcs` and `cycles` correct, `legs` leads over several blocks, `words` and `write` put numbers back.
 
 mod arcs;
 mod cycles;
 mod instruction;
 mod known;
+mod legs;
 mod places;
 mod refusal;
 mod settings;
 mod state;
 mod straight;
 mod stream;
+mod takers;
+mod task;
+mod tools;
 mod words;
 mod write;
-mod written_arc;
 
 pub use known::SetupError;
 pub use refusal::{Lost, Missing, Reason, Refusal, Within};
@@ -27,6 +30,7 @@ use instruction::{Found, Instruction};
 use known::Known;
 use places::Goal;
 use state::{AxisState, AxisStates, Modes, Motion};
+use task::Task;
 use write::{Edits, Scales};
 
 use crate::block::{Block, MAX_BLOCK, column};
@@ -223,129 +227,6 @@ impl Corrector {
             };
         }
         Ok(false)
-    }
-}
-
-/// One block at work.
-struct Task<'a> {
-    known: &'a mut Known,
-    now: &'a mut Now,
-    bytes: &'a [u8],
-    block: &'a Block,
-    said: &'a Instruction,
-    edits: &'a mut Edits,
-    /// Blocks before it.
-    before: &'a mut Vec<u8>,
-    /// Blocks behind it.
-    after: &'a mut Vec<u8>,
-    /// Words count otherwise than before the block.
-    counts_anew: bool,
-}
-
-impl Task<'_> {
-    fn run(&mut self) -> Result<(), Found> {
-        self.note_blanks();
-        self.check_assignments()?;
-        let modes = self.now.modes;
-        let compensated = modes.compensation;
-        self.settle()?;
-        self.counts_anew |= !self.now.modes.count_as(&modes);
-        let compensated = compensated || self.now.modes.compensation;
-        if let Some((meaning, word)) = self.said.taker {
-            self.take(meaning, word)?;
-        } else if self.moves() {
-            self.movement(compensated)?;
-        } else if let Some(word) = self.said.machine_coordinates {
-            return Err((
-                self.start_of(word),
-                Reason::MissingWord {
-                    letter: 'X',
-                    of: "G53",
-                },
-            ));
-        }
-        self.leave_profile();
-        self.now.ended |= self.said.ends;
-        Ok(())
-    }
-
-    fn moves(&self) -> bool {
-        let arc = matches!(self.now.modes.motion, Motion::Arc { .. });
-        self.said.has_axes() || (arc && self.said.centre.iter().any(Option::is_some))
-    }
-
-    fn movement(&mut self, compensated: bool) -> Result<(), Found> {
-        let motion = self.now.modes.motion;
-        self.check_words(motion)?;
-        if compensated {
-            self.check_radius()?;
-        }
-        let within = if compensated {
-            Some(Within::Compensation)
-        } else if self.now.profile.is_some() {
-            Some(Within::Profile)
-        } else if self.now.modes.inverse_time {
-            Some(Within::InverseTime)
-        } else if self.said.after_motion.is_some() {
-            Some(Within::AfterMotion)
-        } else {
-            None
-        };
-        match motion {
-            Motion::None => Err((self.at(), Reason::NoMotion)),
-            Motion::Rapid => self.rapid(),
-            Motion::Line => self.line(within),
-            Motion::Thread => self.line(Some(Within::Thread)),
-            Motion::Spline => self.spline(),
-            Motion::Probe => self.probe(),
-            Motion::Arc { clockwise } => self.arc(clockwise, within),
-            Motion::Cycle(number) => self.cycle(number),
-        }
-    }
-
-    /// I, J, K and R only where they mean something known.
-    fn check_words(&self, motion: Motion) -> Result<(), Found> {
-        let with = motion.name();
-        let plain = matches!(
-            motion,
-            Motion::Rapid | Motion::Line | Motion::Probe | Motion::None
-        );
-        let unexpected = |word: usize| {
-            let letter = char::from(self.block.words[word].letter);
-            Err((self.start_of(word), Reason::Unexpected { letter, with }))
-        };
-        if plain && let Some(word) = self.said.centre.iter().flatten().next() {
-            return unexpected(*word);
-        }
-        // R of a straight movement rounds a corner on some controls.
-        let radius = self.block.words.iter().position(|word| word.letter == b'R');
-        if plain && let Some(word) = radius {
-            return unexpected(word);
-        }
-        Ok(())
-    }
-
-    fn leave_profile(&mut self) {
-        let Some(profile) = &self.now.profile else {
-            return;
-        };
-        if instruction::count(self.block, b'N') == Some(profile.last) {
-            self.now.axes = profile.axes;
-            self.now.approach = profile.approach;
-            self.now.profile = None;
-        }
-    }
-
-    /// First byte of a word.
-    fn start_of(&self, word: usize) -> usize {
-        self.block.words[word].span().start
-    }
-
-    /// Where a message about the movement points: to its first place, or to the block.
-    fn at(&self) -> usize {
-        self.said
-            .first_place()
-            .map_or(0, |word| self.start_of(word))
     }
 }
 

@@ -1,10 +1,10 @@
 //! Where a block goes, and K there.
 
+use super::Task;
 use super::instruction::Found;
 use super::refusal::{Lost, Missing, Reason};
 use super::state::{Offset, axis};
 use super::write::Scale;
-use super::{Task, known};
 use crate::coordinates::{AXES, Axis, Coordinates};
 use crate::path::PathError;
 use crate::terms::{Circumstances, Region, Shape};
@@ -207,35 +207,5 @@ impl Task<'_> {
             ));
         }
         Ok(())
-    }
-
-    /// Another tool offset comes into force.
-    pub fn take_tool_offset(&mut self, number: Option<u32>, sign: f64, added: bool) {
-        self.now.offset_of = Some(number);
-        self.now.radius_of = number;
-        self.now.radius_mm = None;
-        for index in 0..AXES {
-            let mut part = self.known.tool_part(number, sign, axis(index));
-            let before = self.now.axes[index].offsets[Offset::Tool as usize];
-            if added {
-                part.value = before.value.zip(part.value).map(|(old, new)| old + new);
-            }
-            self.change_offset(index, part);
-        }
-        self.now.tool_offset = known::tool_offset(&self.now.axes);
-    }
-
-    /// Another tool offset of one axis: on some controls the axis moves, on some its coordinates change.
-    pub fn change_offset(&mut self, index: usize, part: super::state::Part) {
-        let stands = self.known.dialect.offsets_stand_still();
-        let state = &mut self.now.axes[index];
-        let same = state.offsets[Offset::Tool as usize].value == part.value && part.value.is_some();
-        state.set(Offset::Tool, part);
-        self.counts_anew |= !same;
-        if !same && !stands {
-            state.machine = None;
-            state.program = None;
-            state.lost = Lost::ToolOffset;
-        }
     }
 }

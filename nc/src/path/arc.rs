@@ -1,61 +1,21 @@
-//! Arcs of a program as curves over their angle.
+//! Arcs of a program as curves over their angle, in a `plane`: `turning` says where axes turn round on them, `corrected` what a
+//! correction makes of them, arcs that `fit`.
 
 mod corrected;
 mod fit;
+mod plane;
+mod turning;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 pub use corrected::{ArcPiece, Piece, corrected};
+pub use plane::Plane;
 
 use super::PathError;
-use crate::coordinates::{Axis, Coordinates};
-use crate::terms::{Approach, ROUNDING};
-
-/// The plane of an arc.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Plane {
-    /// G17.
-    #[default]
-    Xy,
-    /// G18: angles count from Z to X.
-    Zx,
-    /// G19.
-    Yz,
-}
-
-impl Plane {
-    /// Its axes, so that a positive angle (G3) turns from the first to the second.
-    #[must_use]
-    pub const fn axes(self) -> [Axis; 2] {
-        match self {
-            Self::Xy => [Axis::X, Axis::Y],
-            Self::Zx => [Axis::Z, Axis::X],
-            Self::Yz => [Axis::Y, Axis::Z],
-        }
-    }
-
-    /// The axis across it, along which a helix climbs.
-    #[must_use]
-    pub const fn across(self) -> Axis {
-        match self {
-            Self::Xy => Axis::Z,
-            Self::Zx => Axis::Y,
-            Self::Yz => Axis::X,
-        }
-    }
-
-    /// A place's two coordinates in the plane.
-    #[must_use]
-    pub fn of(self, place: &Coordinates) -> [f64; 2] {
-        self.axes().map(|axis| place[axis])
-    }
-}
+use crate::coordinates::Coordinates;
 
 /// Nearer than this, mm, start and end are one place: a full circle.
 const SAME_MM: f64 = 1e-9;
-
-/// Nearer to an end than this, as a fraction of the way, is at the end.
-const AT_AN_END: f64 = 1e-9;
 
 /// An arc in machine coordinates: a circle in its plane, all other axes going along with the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,93 +173,6 @@ impl Arc {
         place
     }
 
-    /// From which side each axis comes at a fraction of the way, or just after it; axes that stand keep their direction.
-    #[must_use]
-    pub fn approach(&self, fraction: f64, before: Approach) -> Approach {
-        let mut by = self.to - self.from;
-        let (sin, cos) = (self.start_angle + fraction * self.sweep).sin_cos();
-        let [first, second] = self.plane.axes();
-        let way = self.radii[0].max(self.radii[1]) * self.sweep;
-        by[first] = -sin * way;
-        by[second] = cos * way;
-        before.after(&by)
-    }
-
-    /// From which side each axis came when the arc is done.
-    #[must_use]
-    pub fn approach_after(&self, before: Approach) -> Approach {
-        // In the middle of what is left after the last turning point: at the end itself an axis may stand.
-        let last = self
-            .plane
-            .axes()
-            .into_iter()
-            .flat_map(|axis| self.turns_round(axis))
-            .fold(0.0, f64::max);
-        self.approach(f64::midpoint(last, 1.0), before)
-    }
-
-    /// Fractions of the way at which an axis of the plane turns round. One that goes no farther than rounding of the program's
-    /// numbers explains, before the first or after the last of them, does not.
-    #[must_use]
-    pub fn turns_round(&self, axis: Axis) -> Vec<f64> {
-        let zero = match self.plane.axes().iter().position(|one| *one == axis) {
-            Some(0) => 0.0,
-            Some(_) => PI / 2.0,
-            None => return Vec::new(),
-        };
-        let mut all = self.angles(&[zero, zero + PI]);
-        // r·(1 − cos α) is how far the axis goes over an angle α before or behind the turning point.
-        let radius = self.radii[0].max(self.radii[1]);
-        let least = (1.0 - ROUNDING / radius).max(-1.0).acos() / self.sweep.abs();
-        all.retain(|fraction| (least..=1.0 - least).contains(fraction));
-        all
-    }
-
-    /// Fractions of the way at which a coordinate has a value.
-    #[must_use]
-    pub fn crosses(&self, axis: Axis, value: f64) -> Vec<f64> {
-        let radius = self.radii[0].max(self.radii[1]);
-        match self.plane.axes().iter().position(|one| *one == axis) {
-            Some(i) => {
-                let cosine = (value - self.centre[i]) / radius;
-                if cosine.abs() >= 1.0 {
-                    return Vec::new();
-                }
-                let angle = cosine.acos();
-                if i == 0 {
-                    self.angles(&[angle, -angle])
-                } else {
-                    self.angles(&[PI / 2.0 - angle, PI / 2.0 + angle])
-                }
-            }
-            None => {
-                let way = self.to[axis] - self.from[axis];
-                let fraction = (value - self.from[axis]) / way;
-                (fraction > 0.0 && fraction < 1.0)
-                    .then_some(fraction)
-                    .into_iter()
-                    .collect()
-            }
-        }
-    }
-
-    /// Fractions of the way at which it passes angles, at each of its turns; ends do not count.
-    fn angles(&self, angles: &[f64]) -> Vec<f64> {
-        let mut all = Vec::new();
-        for angle in angles {
-            let mut way = ((angle - self.start_angle) * self.sweep.signum()).rem_euclid(TAU);
-            while way < self.sweep.abs() {
-                let fraction = way / self.sweep.abs();
-                if (AT_AN_END..1.0 - AT_AN_END).contains(&fraction) {
-                    all.push(fraction);
-                }
-                way += TAU;
-            }
-        }
-        all.sort_by(f64::total_cmp);
-        all
-    }
-
     /// The part between two fractions of the way.
     fn part(&self, a: f64, b: f64) -> Self {
         let radius = |t: f64| self.radii[0] + t * (self.radii[1] - self.radii[0]);
@@ -316,8 +189,11 @@ impl Arc {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
-    use crate::terms::Direction;
+    use crate::coordinates::Axis;
+    use crate::terms::{Approach, Direction};
 
     fn arc(to: Coordinates, centre: [f64; 2], clockwise: bool) -> Arc {
         let from = Coordinates::xyz(10.0, 0.0, 0.0);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::refusal::Reason;
+use super::super::refusal::Reason;
 
 /// Ends nearer to each other than this, mm, are one place.
 const SAME_MM: f64 = 1e-9;
