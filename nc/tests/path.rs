@@ -1,16 +1,19 @@
 //! Lines and arcs under corrections, against brute force: the truly corrected path is sampled finely and compared with what would
 //! be written.
 
+#[path = "support/cases.rs"]
+mod cases;
 #[path = "support/random_terms.rs"]
 mod random_terms;
 
+use cases::cases;
 use leadscrew_nc::coordinates::{Axis, Coordinates};
 use leadscrew_nc::path::arc::{self, Arc, Piece, Plane};
 use leadscrew_nc::path::{Tolerance, line};
 use leadscrew_nc::terms::screw::ScrewMap;
 use leadscrew_nc::terms::{Approach, Circumstances, Direction, Terms};
 use proptest::prelude::*;
-use random_terms::{cases, place, terms};
+use random_terms::{place, terms};
 
 const TOLERANCE: Tolerance = Tolerance {
     mm: 0.001,
@@ -59,7 +62,7 @@ fn off_line(
 }
 
 proptest! {
-    #![proptest_config(cases(60))]
+    #![proptest_config(cases(60, 10))]
 
     #[test]
     fn lines_stay_within_the_tolerance_everywhere(

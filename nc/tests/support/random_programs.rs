@@ -1,203 +1,310 @@
-//! Programs for a mill, at random: lines and arcs in all planes and forms, absolute and incremental, and G92. Not in inches: the
-//! interpreter's output has too few digits then.
+//! Programs at random, as a person or a post would write them: lines, arcs in all forms and planes, holes, ways, inches, offsets.
+//! They are drawn as operations and written where a control stands.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
-/// One movement as it is drawn.
+use leadscrew_nc::coordinates::Axis;
+
+use super::control::Control;
+
+/// Something that a program does. Lengths are thousandths of a mm.
 #[derive(Clone, Debug)]
-pub struct Draw {
-    kind: u8,
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
+pub enum Op {
+    Move {
+        rapid: bool,
+        axes: u8,
+        by_letter: u8,
+        to: [i32; 3],
+    },
+    Arc(Arc),
+    Drill {
+        again: bool,
+        to: [i32; 2],
+        bottom: i32,
+        retract: bool,
+    },
+    Plane(u8),
+    Incremental(bool),
+    CentreAbsolute(bool),
+    Inches(bool),
+    Work(u32),
+    Shift {
+        axes: u8,
+        to: [i32; 3],
+    },
+    ShiftOff,
+    Length(u32),
+    Dwell,
 }
 
-/// So many cases, twenty times as many in the long run.
-pub fn cases(count: u32) -> ProptestConfig {
-    let long = std::env::var_os("LEADSCREW_LONG").is_some();
-    ProptestConfig {
-        max_shrink_iters: if long { 80 } else { 0 },
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::with_cases(if long { 20 * count } else { count })
+/// An arc as it is drawn.
+#[derive(Clone, Debug)]
+pub struct Arc {
+    clockwise: bool,
+    in_r: bool,
+    /// From its start, in its plane.
+    centre: [i32; 2],
+    /// Angle turned through, rad: a turn is a full circle.
+    turned: f64,
+    climb: Option<i32>,
+}
+
+/// What programs are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinds {
+    /// X and U are diameters, U, V, W ways; one plane, no modes.
+    pub lathe: bool,
+    /// Holes, work offsets and tool lengths as well.
+    pub offsets: bool,
+    pub inches: bool,
+    /// Step of the words, mm and inches.
+    pub steps: [f64; 2],
+}
+
+fn value() -> std::ops::Range<i32> {
+    -40_000..40_000
+}
+
+fn arc() -> impl Strategy<Value = Op> {
+    let turned = prop_oneof![
+        4 => (1..4_u8).prop_map(|quarters| f64::from(quarters) * PI / 2.0),
+        3 => 0.3..5.9_f64,
+        1 => 0.05..0.15_f64,
+        1 => (PI - 2e-4)..(PI + 2e-4),
+        2 => Just(TAU),
+    ];
+    let centre = prop_oneof![
+        [value(), value()],
+        [-5_000..5_000_i32, -5_000..5_000_i32],
+        [-500..500_i32, -500..500_i32]
+    ];
+    let climb = proptest::option::of(-999..999_i32);
+    (any::<bool>(), any::<bool>(), centre, turned, climb)
+        .prop_filter("a radius", |(_, _, [i, j], _, _)| i.abs() + j.abs() > 200)
+        .prop_map(|(clockwise, in_r, centre, turned, climb)| {
+            Op::Arc(Arc {
+                clockwise,
+                // A full circle has no R form.
+                in_r: in_r && turned != TAU,
+                centre,
+                turned,
+                climb,
+            })
+        })
+}
+
+fn op(kinds: Kinds) -> BoxedStrategy<Op> {
+    let values = [value(), value(), value()];
+    let moves = (any::<bool>(), 1..8_u8, 0..8_u8, values.clone()).prop_map(
+        |(rapid, axes, by_letter, to)| Op::Move {
+            rapid,
+            axes,
+            by_letter,
+            to,
+        },
+    );
+    let common = prop_oneof![10 => moves, 4 => arc(), 1 => Just(Op::Dwell)];
+    if kinds.lathe {
+        return common.boxed();
     }
+    let drill = (any::<bool>(), [value(), value()], value(), any::<bool>());
+    let drill = drill.prop_map(|(again, to, bottom, retract)| Op::Drill {
+        again,
+        to,
+        bottom,
+        retract,
+    });
+    let modes = prop_oneof![
+        any::<bool>().prop_map(Op::Incremental),
+        any::<bool>().prop_map(Op::CentreAbsolute),
+        (0..3_u8).prop_map(Op::Plane),
+        (1..8_u8, values).prop_map(|(axes, to)| Op::Shift { axes, to }),
+        Just(Op::ShiftOff),
+    ];
+    let offsets = prop_oneof![
+        2 => drill,
+        1 => (54..56_u32).prop_map(Op::Work),
+        1 => (0..3_u32).prop_map(Op::Length),
+    ];
+    let inches = any::<bool>().prop_map(Op::Inches);
+    let with_offsets = u32::from(kinds.offsets);
+    prop_oneof![
+        15 => common,
+        7 => modes,
+        4 * with_offsets => offsets,
+        u32::from(kinds.inches) => inches,
+    ]
+    .boxed()
 }
 
-pub fn draws() -> impl Strategy<Value = Vec<Draw>> {
-    let unit = -1.0..1.0_f64;
-    let draw = (0..16_u8, unit.clone(), unit.clone(), unit.clone(), unit);
-    proptest::collection::vec(
-        draw.prop_map(|(kind, a, b, c, d)| Draw { kind, a, b, c, d }),
-        4..14,
-    )
+/// What programs of some kinds do.
+pub fn ops(kinds: Kinds, count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Op>> {
+    proptest::collection::vec(op(kinds), count)
 }
 
-/// The writer's own idea of where it is, mm, in the coordinates in force.
-struct Writer {
-    text: String,
-    at: [f64; 3],
-    incremental: bool,
-    plane: usize,
-    centre_absolute: bool,
-    steps: usize,
+/// Writes operations as blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Writer {
+    kinds: Kinds,
+    /// The block before was a hole: one may be added by its place alone.
+    drilled: bool,
 }
-
-/// Step of the words, mm: a fine one, or the coarse one of some posts.
-const STEPS: [f64; 2] = [1e-4, 1e-3];
 
 impl Writer {
-    fn round(&self, mm: f64) -> f64 {
-        let step = STEPS[self.steps];
-        (mm / step).round() * step
-    }
-
-    fn word(&mut self, letter: char, mm: f64) {
-        let _ = write!(self.text, " {letter}{mm:.4}");
-    }
-
-    /// Axis words to a place that is rounded to what can be written.
-    fn go(&mut self, to: [f64; 3]) {
-        for (axis, letter) in "XYZ".chars().enumerate() {
-            let way = self.round(to[axis] - self.at[axis]);
-            if way != 0.0 {
-                let value = if self.incremental {
-                    way
-                } else {
-                    self.round(to[axis])
-                };
-                let new = if self.incremental {
-                    self.at[axis] + way
-                } else {
-                    value
-                };
-                self.word(letter, value);
-                self.at[axis] = new;
-            }
+    pub fn new(kinds: Kinds) -> Self {
+        Self {
+            kinds,
+            drilled: false,
         }
     }
 
-    fn arc(&mut self, draw: &Draw) {
-        let [first, second] = [[0, 1], [2, 0], [1, 2]][self.plane];
-        let across = 3 - first - second;
-        let radius = 0.2 + 15.0 * draw.a * draw.a;
-        let start = draw.b * TAU / 2.0;
-        let turned = match draw.kind {
-            7 => TAU / 2.0 + 2e-4 * draw.c,
-            8 => 0.05 + draw.c.abs() * 0.1,
-            _ => 0.3 + draw.c.abs() * 5.6,
-        };
-        let clockwise = draw.d > 0.0;
-        let turned = if clockwise { -turned } else { turned };
-        let from = self.at;
-        let mut centre = [0.0; 3];
-        centre[first] = self.round(from[first] - radius * start.cos());
-        centre[second] = self.round(from[second] - radius * start.sin());
-        let exact = (from[first] - centre[first]).hypot(from[second] - centre[second]);
-        let begun = (from[second] - centre[second]).atan2(from[first] - centre[first]);
-        let mut to = from;
-        to[first] = centre[first] + exact * (begun + turned).cos();
-        to[second] = centre[second] + exact * (begun + turned).sin();
-        if draw.kind == 9 {
-            to[across] += 3.0 * draw.d;
-        }
-        let full = draw.kind == 10;
-        if full {
-            to = from;
-        }
-        let _ = write!(self.text, "{}", if clockwise { "G2" } else { "G3" });
-        let in_r = matches!(draw.kind, 6 | 7) && !full;
-        self.go(to);
-        if in_r {
-            let half = self
-                .at
-                .iter()
-                .zip(&from)
-                .map(|(a, b)| (a - b) * (a - b))
-                .sum::<f64>()
-                .sqrt()
-                / 2.0;
-            let signed = if turned.abs() > TAU / 2.0 {
-                -exact.max(half)
-            } else {
-                exact.max(half)
-            };
-            // Rounded up, the end can be reached.
-            let step = self.round(1e-3).max(1e-4);
-            let reach = (signed.abs() / step).ceil() * step * signed.signum();
-            self.word('R', reach);
-        } else {
-            for (axis, letter) in [first, second].map(|axis| (axis, ['I', 'J', 'K'][axis])) {
-                let value = if self.centre_absolute {
-                    centre[axis]
-                } else {
-                    centre[axis] - from[axis]
-                };
-                self.word(letter, value);
+    /// The blocks of an operation where the control stands; none where it cannot be written there.
+    pub fn blocks(&mut self, op: &Op, control: &Control) -> Vec<String> {
+        let drilled = std::mem::replace(&mut self.drilled, matches!(op, Op::Drill { .. }));
+        let mm = |value: i32| f64::from(value) / 1000.0;
+        match op {
+            Op::Move {
+                rapid,
+                axes,
+                by_letter,
+                to,
+            } => vec![self.movement(*rapid, *axes, *by_letter, to.map(mm), control)],
+            Op::Arc(arc) => self.arc(arc, control).into_iter().collect(),
+            Op::Drill {
+                again,
+                to: [x, y],
+                bottom,
+                retract,
+            } => {
+                let word = |letter, axis, value: i32| self.word(letter, mm(value), axis, control).0;
+                let hole = format!("{}{}", word('X', 0, *x), word('Y', 1, *y));
+                if *again && drilled {
+                    return vec![hole];
+                }
+                let height = if *retract { "G99" } else { "G98" };
+                let z = word('Z', 2, *bottom);
+                let r = word('R', 2, *bottom + 5000);
+                vec!["G17 G90".into(), format!("{height} G81{hole}{z}{r} F50")]
             }
-        }
-        self.text.push('\n');
-    }
-
-    fn step(&mut self, draw: &Draw) {
-        match draw.kind {
-            0..=2 => {
-                self.text.push_str("G1");
-                self.go([60.0 * draw.a, 60.0 * draw.b, 40.0 * draw.c]);
-                self.text.push('\n');
-            }
-            3 => {
-                self.text.push_str("G0");
-                self.go([60.0 * draw.a, 60.0 * draw.b, self.at[2]]);
-                self.text.push('\n');
-            }
-            4..=10 => self.arc(draw),
-            11 => {
-                self.incremental = !self.incremental;
-                self.text
-                    .push_str(if self.incremental { "G91\n" } else { "G90\n" });
-            }
-            12 => self.text.push_str("G4 P0\n"),
-            13 => {
-                self.plane = (self.plane + 1) % 3;
-                self.text.push_str(["G17\n", "G18\n", "G19\n"][self.plane]);
-            }
-            14 => {
-                self.centre_absolute = !self.centre_absolute;
-                self.text.push_str(if self.centre_absolute {
-                    "G90.1\n"
-                } else {
-                    "G91.1\n"
+            Op::Plane(plane) => vec![["G17", "G18", "G19"][usize::from(*plane)].into()],
+            Op::Incremental(on) => vec![String::from(if *on { "G91" } else { "G90" })],
+            Op::CentreAbsolute(on) => vec![String::from(if *on { "G90.1" } else { "G91.1" })],
+            Op::Inches(on) => vec![String::from(if *on { "G20" } else { "G21" })],
+            Op::Work(work) => vec![format!("G{work}")],
+            Op::Shift { axes, to } => {
+                let words = (0..3).filter(|axis| axes & (1 << axis) != 0);
+                let words = words.map(|axis| {
+                    self.word(['X', 'Y', 'Z'][axis], mm(to[axis]), axis, control)
+                        .0
                 });
+                vec![format!("G92{}", words.collect::<String>())]
             }
-            _ => {
-                self.text.push_str("G92");
-                let x = self.round(20.0 * draw.a);
-                self.word('X', x);
-                self.at[0] = x;
-                self.text.push('\n');
-            }
+            Op::ShiftOff => vec!["G92.1".into()],
+            Op::Length(0) => vec!["G49".into()],
+            Op::Length(tool) => vec![format!("G43 H{tool}")],
+            Op::Dwell => vec!["G4 P0".into()],
         }
     }
-}
 
-pub fn program(draws: &[Draw]) -> String {
-    let mut writer = Writer {
-        text: "G21 G17 G90 G91.1 G94 G40 G49 G54\nF100\nG0 X-70 Y-70 Z-50\nG1 X10 Y20 Z-5\n"
-            .to_owned(),
-        at: [10.0, 20.0, -5.0],
-        incremental: false,
-        plane: 0,
-        centre_absolute: false,
-        steps: usize::from(draws.len().is_multiple_of(2)),
-    };
-    for draw in draws {
-        writer.step(draw);
+    fn step(&self, control: &Control) -> f64 {
+        self.kinds.steps[usize::from(control.is_inches())]
     }
-    writer.text.push_str("G92.1\nM2\n");
-    writer.text
+
+    /// A word of an axis, and the value that it has, rounded to what can be written.
+    fn word(&self, letter: char, mm: f64, axis: usize, control: &Control) -> (String, f64) {
+        let (step, unit) = (self.step(control), control.unit(axis));
+        let steps = (mm / unit / step).round();
+        let decimals = -step.log10().round() as usize;
+        (
+            format!(" {letter}{:.decimals$}", steps * step),
+            steps * step * unit,
+        )
+    }
+
+    fn movement(
+        &self,
+        rapid: bool,
+        axes: u8,
+        by_letter: u8,
+        to: [f64; 3],
+        control: &Control,
+    ) -> String {
+        let mut block = String::from(if rapid { "G0" } else { "G1" });
+        for axis in (0..3).filter(|axis| axes & (1 << axis) != 0) {
+            let way = self.kinds.lathe && by_letter & (1 << axis) != 0;
+            let letter = [['X', 'Y', 'Z'], ['U', 'V', 'W']][usize::from(way)][axis];
+            block += &self.word(letter, to[axis], axis, control).0;
+        }
+        block + if rapid { "" } else { " F100" }
+    }
+
+    /// An arc from where the control stands: none where rounding leaves no end apart from the start.
+    fn arc(&self, arc: &Arc, control: &Control) -> Option<String> {
+        let plane = control.plane();
+        let [first, second] = plane.axes().map(Axis::index);
+        let from: [f64; 3] = std::array::from_fn(|axis| control.program_mm(axis));
+        let sign = if arc.clockwise { -1.0 } else { 1.0 };
+        let [i, j] = arc.centre.map(|value| f64::from(value) / 1000.0);
+        let radius = i.hypot(j);
+        let begun = (-j).atan2(-i);
+        let ended = begun + sign * arc.turned;
+        let is_full = arc.turned == TAU;
+        let mut block = String::from(if arc.clockwise { "G2" } else { "G3" });
+        let mut goal = from;
+        (goal[first], goal[second]) = (
+            from[first] + i + radius * ended.cos(),
+            from[second] + j + radius * ended.sin(),
+        );
+        let across = plane.across().index();
+        goal[across] += arc.climb.map_or(0.0, |climb| f64::from(climb) / 1000.0);
+        let mut way = [0.0; 3];
+        for axis in 0..3 {
+            let stays = (axis == across && arc.climb.is_none()) || (is_full && axis != across);
+            if stays {
+                continue;
+            }
+            let base = if control.is_incremental() {
+                from[axis]
+            } else {
+                0.0
+            };
+            let (word, said) = self.word(['X', 'Y', 'Z'][axis], goal[axis] - base, axis, control);
+            block += &word;
+            way[axis] = base + said - from[axis];
+        }
+        let half = way[first].hypot(way[second]) / 2.0;
+        if half < self.step(control) * control.centre_unit() && !is_full {
+            return None;
+        }
+        if arc.in_r {
+            // Rounded up, the end can be reached.
+            let unit = self.step(control) * control.centre_unit();
+            let reach = (radius.max(half) / unit).ceil() * unit;
+            let signed = if arc.turned > PI { -reach } else { reach };
+            block += &self.centre_word('R', signed, control);
+            return Some(block);
+        }
+        for (axis, centre) in [(first, i), (second, j)] {
+            let base = if control.is_centre_absolute() {
+                from[axis]
+            } else {
+                0.0
+            };
+            block += &self.centre_word(['I', 'J', 'K'][axis], base + centre, control);
+        }
+        Some(block)
+    }
+
+    /// A word that is a radius on a lathe too.
+    fn centre_word(&self, letter: char, mm: f64, control: &Control) -> String {
+        let step = self.step(control);
+        let decimals = -step.log10().round() as usize;
+        let mut text = String::new();
+        let value = (mm / control.centre_unit() / step).round() * step;
+        let _ = write!(text, " {letter}{value:.decimals$}");
+        text
+    }
 }

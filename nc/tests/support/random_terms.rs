@@ -8,17 +8,6 @@ use leadscrew_nc::terms::screw::ScrewMap;
 use leadscrew_nc::terms::thermal::{Grows, Thermal};
 use leadscrew_nc::terms::workpiece::Workpiece;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-/// So many cases, ten times as many in the long run.
-pub fn cases(count: u32) -> ProptestConfig {
-    let long = std::env::var_os("LEADSCREW_LONG").is_some();
-    ProptestConfig {
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::with_cases(if long { 10 * count } else { count })
-    }
-}
 
 /// Places that lie in all tables.
 pub fn place() -> impl Strategy<Value = Coordinates> {
