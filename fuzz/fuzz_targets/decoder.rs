@@ -1,4 +1,4 @@
-//! Any bytes into a link: `cargo +nightly fuzz run decoder` at the root. What it finds is kept in `corpus/decoder`, and
+//! Any bytes into a link: `fuzz/README.md` says how to run it. What it finds is kept in `corpus/decoder`, and
 //! replayed by `tests/protocol`.
 #![no_main]
 

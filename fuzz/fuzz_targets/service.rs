@@ -1,4 +1,4 @@
-//! Any bodies in good frames into a link: `cargo +nightly fuzz run service` at the root. What it finds is kept in
+//! Any bodies in good frames into a link: `fuzz/README.md` says how to run it. What it finds is kept in
 //! `corpus/service`, and replayed by `tests/protocol`.
 #![no_main]
 

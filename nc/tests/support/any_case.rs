@@ -122,7 +122,7 @@ impl Case {
     }
 
     pub fn dialect(&self) -> Dialect {
-        Dialect::named(self.dialect).unwrap_or_else(|| panic!("{}", self.dialect))
+        shop::dialect(self.dialect)
     }
 
     pub fn terms(&self) -> Terms {

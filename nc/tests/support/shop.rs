@@ -1,5 +1,7 @@
 //! The machine that random programs run on: two work offsets, two tools, its axes at the origin.
 
+use std::sync::OnceLock;
+
 use leadscrew_nc::coordinates::{Axis, Coordinates};
 use leadscrew_nc::corrector::Corrector;
 use leadscrew_nc::dialect::{Dialect, Integers};
@@ -41,6 +43,14 @@ pub fn state(dialect: &Dialect) -> MachineState {
     state
 }
 
+/// A dialect that comes with the crate; each is read once, for they are asked for often.
+pub fn dialect(name: &str) -> Dialect {
+    static ALL: OnceLock<Vec<Dialect>> = OnceLock::new();
+    let all = ALL.get_or_init(|| Dialect::names().filter_map(Dialect::named).collect());
+    let found = all.iter().find(|dialect| dialect.name() == name);
+    found.unwrap_or_else(|| panic!("{name}")).clone()
+}
+
 /// The sum of some polynomials.
 pub fn terms(polynomials: &[Polynomial]) -> Terms {
     let sum = |terms: Terms, one: &Polynomial| terms.with(*one);
@@ -54,7 +64,7 @@ pub fn side_by_side(
     polynomials: &[Polynomial],
     tolerance_mm: f64,
 ) -> SideBySide {
-    let dialect = Dialect::named(dialect).unwrap();
+    let dialect = self::dialect(dialect);
     let numbers = *dialect.numbers();
     let inch = numbers.increment_inch.unwrap_or(f64::NAN);
     let steps = [numbers.increment_mm, inch];
