@@ -17,6 +17,8 @@ mod offsets;
 mod paper;
 #[path = "hazards/refusals.rs"]
 mod refusals;
+#[path = "hazards/reversals.rs"]
+mod reversals;
 #[path = "hazards/splitting.rs"]
 mod splitting;
 #[path = "hazards/turning.rs"]

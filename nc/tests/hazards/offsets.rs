@@ -157,3 +157,36 @@ fn a_tool_change_may_move_the_machine() {
     );
     assert_eq!(out.unwrap(), "T1 M6\nG91 G0 X1.301\n");
 }
+
+#[test]
+fn what_the_control_adds_to_all_offsets_counts() {
+    let mut state = state();
+    state.work_offsets.external = places(&[(X, 7.0)]);
+    let program = "G0 X0\nG10 L2 P1 X300\nG0 X0\n";
+    let out = correct_by("linuxcnc-mill", &state, slope(X, X, 0.001), program);
+    assert_eq!(out.unwrap(), "G0 X0.107\nG10 L2 P1 X300\nG0 X0.307\n");
+    state.work_offsets.external.clear();
+    state.work_offsets.shift = places(&[(X, 20.0)]);
+    let out = correct_by("linuxcnc-mill", &state, slope(X, X, 0.001), "G0 X0\n");
+    assert_eq!(out.unwrap(), "G0 X0.12\n");
+}
+
+#[test]
+fn a_tool_offset_may_come_on_top_of_another() {
+    let program = "G43 H1\nG43.2 H1\nG0 Z0\n";
+    let out = correct_by("linuxcnc-mill", &state(), slope(Z, Z, 0.001), program);
+    assert_eq!(out.unwrap(), "G43 H1\nG43.2 H1\nG0 Z0.1\n");
+}
+
+#[test]
+fn at_a_reference_nothing_is_left_of_what_was_applied() {
+    assert_eq!(
+        x_by_x("G0 X10\nG28 X10\nG91 G0 X-1\n").unwrap(),
+        "G0 X10.11\nG28 X10\nG91 G0 X-0.501\n"
+    );
+    // The reference is set where the control really stands, 110.11.
+    assert_eq!(
+        x_by_x("G0 X10\nG28.1\nG28\nG91 G0 X-1\n").unwrap(),
+        "G0 X10.11\nG28.1\nG28\nG91 G0 X-0.8909\n"
+    );
+}

@@ -39,8 +39,9 @@ fn terms() -> impl Strategy<Value = Vec<Polynomial>> {
     proptest::collection::vec(one, 1..4)
 }
 
-fn pair(dialect: &str, polynomials: &[Polynomial]) -> SideBySide {
-    let state = shop::state(&Dialect::named(dialect).unwrap());
+fn pair(dialect: &str, polynomials: &[Polynomial], radii_mm: Option<f64>) -> SideBySide {
+    let mut state = shop::state(&Dialect::named(dialect).unwrap());
+    state.radius_tolerance_mm = radii_mm;
     shop::side_by_side(dialect, &state, polynomials, TOLERANCE_MM)
 }
 
@@ -88,21 +89,21 @@ impl Tally {
 }
 
 /// Draws programs and runs them; at least so many of a hundred must come through whole.
-fn drawn(dialect: &str, kinds: Kinds, count: u32, whole_percent: u32) {
+fn drawn(dialect: &str, kinds: Kinds, radii_mm: Option<f64>, count: u32, whole_percent: u32) {
     let config = cases(count, 20);
     let mut runner = TestRunner::new(config.clone());
     let mut tally = Tally::default();
     for _ in 0..config.cases {
         let drawn = (terms(), ops(kinds, 1..60)).new_tree(&mut runner).unwrap();
         let (polynomials, ops) = drawn.current();
-        tally.run(pair(dialect, &polynomials), kinds, &ops);
+        tally.run(pair(dialect, &polynomials, radii_mm), kinds, &ops);
     }
     println!("{dialect}: {tally:?}");
     assert!(
         100 * tally.whole >= whole_percent * tally.programs,
         "{tally:?}"
     );
-    assert!(tally.blocks > 20 * tally.programs, "{tally:?}");
+    assert!(tally.blocks > 5 * tally.programs, "{tally:?}");
 }
 
 #[test]
@@ -113,18 +114,26 @@ fn every_block_of_a_milling_program_ends_at_its_target_plus_k() {
         inches: true,
         steps: [1e-4, 1e-5],
     };
-    drawn("linuxcnc-mill", kinds, 96, 90);
+    drawn("linuxcnc-mill", kinds, None, 96, 90);
 }
+
+const TURNING: Kinds = Kinds {
+    lathe: true,
+    offsets: false,
+    inches: false,
+    steps: [1e-3, 1e-4],
+};
 
 #[test]
 fn every_block_of_a_turning_program_ends_at_its_target_plus_k() {
-    let kinds = Kinds {
-        lathe: true,
-        offsets: false,
-        inches: false,
-        steps: [1e-3, 1e-4],
-    };
-    drawn("iso-lathe", kinds, 96, 80);
+    drawn("iso-lathe", TURNING, None, 96, 80);
+}
+
+/// Rounded to the words' step, centre and ends of an arc differ in radius by about as much as this control allows: what it would
+/// refuse is not written.
+#[test]
+fn what_is_written_is_an_arc_for_a_control_that_allows_little() {
+    drawn("iso-lathe", TURNING, Some(0.0012), 96, 10);
 }
 
 #[test]
@@ -143,7 +152,7 @@ fn ways_do_not_drift_over_thousands_of_moves() {
         k1: -1.7e-4,
         k2: 0.0,
     };
-    let mut pair = pair("linuxcnc-mill", &[polynomial, across]);
+    let mut pair = pair("linuxcnc-mill", &[polynomial, across], None);
     pair.run("G91");
     for number in 0..5_000_i64 {
         let way = (number * 7919 % 2003 - 1001) as f64 / 1000.0;
