@@ -151,3 +151,23 @@ fn an_arc_under_compensation_is_not_split() {
         "{refusal}"
     );
 }
+
+#[test]
+fn turns_are_not_gone_again_by_the_first_piece() {
+    let program = "G0 X10 Y0 Z0\nG3 X10 Y0 Z-8 I-10 J0 P2 F50\n";
+    let out = correct("linuxcnc-mill", slope(X, X, 0.001), program);
+    let lines: Vec<_> = out.lines().skip(1).collect();
+    assert!(lines[0].ends_with(" P1 F50"), "{out}");
+    assert!(
+        lines.len() > 3 && lines[1..].iter().all(|line| !line.contains('P')),
+        "{out}"
+    );
+    // Twice round, each piece climbs by its share: half of the height once round.
+    let once = lines
+        .iter()
+        .position(|line| line.contains("X10.01 Y0 Z-4 "));
+    assert!(once.is_some_and(|once| once < lines.len() - 1), "{out}");
+    // Moved as a whole it keeps them.
+    let out = correct("linuxcnc-mill", constant(&[(Y, 0.0)]), program);
+    assert_eq!(out, program);
+}

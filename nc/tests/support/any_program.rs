@@ -127,7 +127,7 @@ fn shown(block: &[u8], out: &[u8]) -> String {
     format!("{:?} -> {:?}: ", text(block), text(out))
 }
 
-/// Words that are no places and no feeds, and comments, in their order.
+/// Words that are no places, feeds and turns of arcs, and comments, in their order.
 fn kept<'a>(blocks: impl IntoIterator<Item = &'a [u8]>, dialect: &Dialect) -> Vec<Vec<u8>> {
     let mut all = Vec::new();
     let mut read = Block::default();
@@ -139,7 +139,7 @@ fn kept<'a>(blocks: impl IntoIterator<Item = &'a [u8]>, dialect: &Dialect) -> Ve
         }
         let stays = |word: &&Word| match dialect.letter(word.letter) {
             Letter::M | Letter::Label | Letter::Unknown => true,
-            Letter::Parameter => !b"RF".contains(&word.letter),
+            Letter::Parameter => !b"RFP".contains(&word.letter),
             Letter::G | Letter::Axis(_) | Letter::Way(_) | Letter::Centre(_) => false,
         };
         let words = read.words.iter().filter(stays);
