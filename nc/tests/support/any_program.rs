@@ -112,7 +112,11 @@ fn is_written_well(case: &Case, blocks: &[Vec<u8>]) {
                 .as_mut()
                 .map(|again| again.block(block_out, &mut same));
             if let Some(Err(refusal)) = passed {
-                panic!("{}{refusal}", shown(block, &out));
+                panic!(
+                    "{}{refusal}\n{}",
+                    shown(block, &out),
+                    String::from_utf8_lossy(&blocks.concat())
+                );
             }
         }
     }

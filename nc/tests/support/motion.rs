@@ -63,8 +63,10 @@ impl Motion {
     /// Places along it, on arcs so near to each other that the lines between them are within 0.1 µm of it, and where an axis turns
     /// round.
     pub fn samples(&self) -> Vec<Coordinates> {
+        let way = (self.to - self.from).length_mm();
         let count = match self.shape {
-            Shape::Line if self.is_feed => 40,
+            // K bends along it.
+            Shape::Line if self.is_feed => 40 + (way / 5.0) as usize,
             Shape::Line => 1,
             Shape::Arc {
                 plane,

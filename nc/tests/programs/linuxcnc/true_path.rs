@@ -2,16 +2,18 @@
 
 use std::io::BufReader;
 
-use leadscrew_nc::coordinates::Coordinates;
+use leadscrew_nc::coordinates::{Axis, Coordinates};
 use leadscrew_nc::corrector::{CorrectError, Corrector, correct};
 use leadscrew_nc::setup::Setup;
-use leadscrew_nc::terms::{Approach, Circumstances};
+use leadscrew_nc::terms::{Approach, Circumstances, Direction};
 
 use super::rs274::{self, Canon, Control};
 use crate::polyline::strays;
 
 /// Lines of a path that are looked at ahead of where it may have been at the place before.
 const AHEAD: usize = 300;
+/// Ways below it are rounding of sums and turn no axis round.
+const TURNS_MM: f64 = 1e-6;
 /// Half a step of the words, 0.0001 mm, on three axes and in I, J.
 const ROUNDING_MM: f64 = 0.0003;
 
@@ -54,12 +56,8 @@ fn true_path(case: &Case, canons: &[Canon]) -> (Vec<Coordinates>, Vec<Coordinate
         let in_cycle = case.cycles.contains(&canon.block.as_str());
         let samples = motion.samples();
         let mut approach = with.approach;
-        let mut before = samples[0];
         for (index, at) in samples.iter().enumerate() {
-            let next = samples.get(index + 1).unwrap_or(at);
-            approach = approach.after(&(*at - before));
-            let onward = approach.after(&(*next - *at));
-            before = *at;
+            let onward = onward(approach, &samples[index..]);
             if motion.is_feed && !in_cycle {
                 // Where an axis turns round the true place jumps.
                 path.push(k(at, approach));
@@ -75,6 +73,29 @@ fn true_path(case: &Case, canons: &[Canon]) -> (Vec<Coordinates>, Vec<Coordinate
         with.approach = approach;
     }
     (path, cycle_ends)
+}
+
+/// From where the axes come when they go on from the first of `samples`. About a turning point the steps from sample to sample are
+/// below what turns an axis round; where it turns, and farther, it does so at that point.
+fn onward(approach: Approach, samples: &[Coordinates]) -> Approach {
+    let [at, next, ..] = samples else {
+        return approach;
+    };
+    let turns = |(axis, by): (Axis, f64)| {
+        let goes = |to: &Coordinates| (to[axis] - at[axis]) * by.signum() > TURNS_MM;
+        let direction = if by > 0.0 {
+            Direction::Up
+        } else {
+            Direction::Down
+        };
+        (by != 0.0 && samples.iter().any(goes)).then_some((axis, direction))
+    };
+    let by = *next - *at;
+    by.iter()
+        .filter_map(turns)
+        .fold(approach, |approach, (axis, direction)| {
+            approach.with(axis, direction)
+        })
 }
 
 fn written_path(case: &Case, canons: &[Canon]) -> (Vec<Coordinates>, Vec<Coordinates>) {
