@@ -7,6 +7,8 @@ mod written_arc;
 
 use std::f64::consts::TAU;
 
+use programmed::Form;
+
 use super::Task;
 use super::instruction::Found;
 use super::known::Known;
@@ -14,9 +16,11 @@ use super::legs::Leg;
 use super::places::Goals;
 use super::refusal::{Reason, Within};
 use crate::coordinates::{Axis, AxisSet, Coordinates};
-use crate::path::PathError;
 use crate::path::arc::{Arc, Piece, corrected};
 use crate::terms::{Circumstances, Shape};
+
+/// Share of the tolerance that rounding of R may take; what the arc is off besides has the rest.
+const OF_RADIUS: f64 = 0.5;
 
 /// A circle that a leg goes along, corrected.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +54,7 @@ impl Task<'_> {
             return self.moved_arc(&goals, &arc);
         }
         let with = self.standing_circumstances();
-        let legs = self.legs_of(&arc, &from, &with)?;
+        let legs = self.legs_of(&arc, form, &from, &with)?;
         self.check_pieces(legs.len(), within)?;
         let after = Circumstances {
             approach: arc.approach_after(with.approach),
@@ -59,34 +63,22 @@ impl Task<'_> {
         self.lead(&goals, &from, &legs, &after)
     }
 
-    /// The arc in pieces. Where it begins so far from its circle that no piece is an arc, a line leads to it.
     fn legs_of(
         &self,
         arc: &Arc,
+        form: Form,
         from: &Coordinates,
         with: &Circumstances,
     ) -> Result<Vec<Leg>, Found> {
-        let Known {
-            terms, tolerance, ..
-        } = &*self.known;
+        let Known { terms, .. } = &*self.known;
+        let tolerance = &match form {
+            Form::Radius(_) => self.known.tolerance.part(1.0 - OF_RADIUS),
+            Form::Centre => self.known.tolerance,
+        };
         let started = self.started_with(&self.correction_here(from)?);
-        let found = |error| (self.at(), Reason::Path(error));
-        match corrected(arc, &started, terms, with, tolerance) {
-            Ok(pieces) => Ok(pieces.into_iter().map(leg).collect()),
-            Err(PathError::NotAnArc) => {
-                let k = self.correction(from, with, self.at())?;
-                let pieces = corrected(arc, &k, terms, with, tolerance).map_err(found)?;
-                let lead = Leg {
-                    to: *from,
-                    k,
-                    circle: None,
-                };
-                Ok(std::iter::once(lead)
-                    .chain(pieces.into_iter().map(leg))
-                    .collect())
-            }
-            Err(error) => Err(found(error)),
-        }
+        let pieces = corrected(arc, &started, terms, with, tolerance);
+        let pieces = pieces.map_err(|error| (self.at(), Reason::Path(error)))?;
+        Ok(pieces.into_iter().map(leg).collect())
     }
 
     /// K that the control stands with where K is `here`: the remainders of rounding are left out.
@@ -101,28 +93,25 @@ impl Task<'_> {
         started
     }
 
-    /// True where a line has to lead to the start of a full circle under one K everywhere: it ends where it begins, so there is no
-    /// other place where the control could come to stand right.
+    /// True where a line has to lead to the start of an arc under one K everywhere: it stands farther off than the control allows, or
+    /// the arc is a full circle, which ends where it begins, so that there is no other place where the control could come to
+    /// stand right.
     fn is_led_to(&self, arc: &Arc) -> Result<bool, Found> {
         let k = self.correction(&arc.from, &self.standing_circumstances(), self.at())?;
         let applied = self.applied();
+        let [off_x, off_y] = arc.plane.of(&(k - applied));
         let mut plane = arc.plane.axes().into_iter();
-        Ok(arc.is_closed() && plane.any(|axis| !self.scale(axis).says(applied[axis], k[axis])))
+        let is_off = plane.any(|axis| !self.scale(axis).says(applied[axis], k[axis]));
+        Ok(off_x.hypot(off_y) > self.known.radius_tolerance_mm || arc.is_closed() && is_off)
     }
 
     /// With one K everywhere the arc stays the arc it is.
     fn moved_arc(&mut self, goals: &Goals, arc: &Arc) -> Result<(), Found> {
         let at = self.at();
         let k = self.correction(&arc.to, &self.circumstances(goals), at)?;
-        let started = self.applied();
-        let [first, second] = arc.plane.axes();
-        let by_mm = (k[first] - started[first]).hypot(k[second] - started[second]);
-        if by_mm > self.known.radius_tolerance_mm {
-            return Err((at, Reason::ArcStart { by_mm }));
-        }
-        let [x, y] = arc.centre;
+        let ([x, y], [k_x, k_y]) = (arc.centre, arc.plane.of(&k));
         let circle = Circle {
-            centre: [x + k[first], y + k[second]],
+            centre: [x + k_x, y + k_y],
             radius: arc.radii[0],
             sweep: arc.sweep,
         };

@@ -174,7 +174,7 @@ pub enum Reason {
         /// By how much, mm.
         by_mm: f64,
     },
-    /// The centre that the control works out of R and the ends would be elsewhere, however R is rounded.
+    /// With R in whole steps the arc that the control works out of R and its ends would lie elsewhere, however R is rounded.
     RadiusForm {
         /// By how much at least, mm.
         off_mm: f64,

@@ -36,6 +36,15 @@ pub struct Tolerance {
 const JUMP: f64 = 0.5;
 
 impl Tolerance {
+    /// A share of it, from 0 to 1.
+    #[must_use]
+    pub fn part(self, share: f64) -> Self {
+        Self {
+            mm: share * self.mm,
+            degrees: share * self.degrees,
+        }
+    }
+
     /// Of the two shares, mm and degrees, the one that uses up more of the tolerance: 1 at the limit.
     #[must_use]
     pub fn share(&self, deviation: &Coordinates) -> f64 {

@@ -27,15 +27,14 @@ fn the_centre_counts_from_where_the_control_really_stands() {
 }
 
 #[test]
-fn an_arc_that_would_begin_beside_its_circle_is_refused() {
-    let refusal = refused(
-        "linuxcnc-mill",
-        constant(&[(X, 0.1)]),
-        "G2 X0 Y-20 I0 J-10\n",
-    );
-    assert_eq!(
-        refusal,
-        "1:4: the arc would begin 0.1000 mm beside its circle: lead in with a straight movement"
+fn a_line_leads_to_an_arc_that_would_begin_beside_its_circle() {
+    let terms = || constant(&[(X, 0.1)]);
+    let out = correct("linuxcnc-mill", terms(), "G2 X0 Y-20 I0 J-10\n");
+    assert_eq!(out, "G1 X0.1\nG2 X0.1 Y-20 I0 J-10\n");
+    let within = refused("linuxcnc-mill", terms(), "G41.1 D1 G2 X0 Y-20 I0 J-10\n");
+    assert!(
+        within.starts_with("1:13: the movement would have to be split into 2, which must not be between G41 or G42 and G40"),
+        "{within}"
     );
 }
 

@@ -5,7 +5,7 @@ use super::super::instruction::Found;
 use super::super::places::Goals;
 use super::super::refusal::Reason;
 use super::written_arc::{SameEnds, WrittenArc};
-use super::{Circle, circle_frame};
+use super::{Circle, OF_RADIUS, circle_frame};
 use crate::coordinates::Coordinates;
 use crate::path::PathError;
 use crate::path::arc::Arc;
@@ -19,12 +19,13 @@ impl Task<'_> {
         started: &Coordinates,
         circle: &Circle,
     ) -> Result<f64, Found> {
+        // Two arcs with the same ends are farthest apart in their middles.
         let off = |radius: f64| {
             let arc = self.arc_of_radius(goals, started, radius, circle);
             arc.map_or(f64::INFINITY, |arc| {
-                let [x, y] = arc.centre;
-                let centre = (x - circle.centre[0]).hypot(y - circle.centre[1]);
-                centre + (arc.radii[0] - circle.radius).abs()
+                let [x, y] = arc.plane.of(&arc.at(0.5));
+                let [centre_x, centre_y] = circle.centre;
+                ((x - centre_x).hypot(y - centre_y) - circle.radius).abs()
             })
         };
         let exact = circle.signed_radius();
@@ -43,7 +44,8 @@ impl Task<'_> {
         written
             .check_sweep(circle.sweep)
             .map_err(|reason| (self.at(), reason))?;
-        if off_mm > self.known.tolerance.mm {
+        // A step is what rounding may be off anywhere.
+        if off_mm > OF_RADIUS * self.known.tolerance.mm + step {
             return Err((self.at(), Reason::RadiusForm { off_mm }));
         }
         Ok(radius)

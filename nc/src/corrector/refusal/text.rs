@@ -102,7 +102,7 @@ impl fmt::Display for Reason {
             Self::RadiusForm { off_mm } => {
                 write!(
                     f,
-                    "with R in whole steps the centre of the corrected arc would be {off_mm:.4} mm off"
+                    "with R in whole steps the corrected arc would be {off_mm:.4} mm off its place"
                 )
             }
             Self::Sweep {

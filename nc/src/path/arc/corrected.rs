@@ -136,9 +136,10 @@ struct Pieces<'a> {
 }
 
 impl Pieces<'_> {
-    /// Adds the pieces between two fractions of the way, over which the approach does not change.
+    /// Adds the pieces between two fractions of the way, over which the approach does not change. Where the machine stands so far off
+    /// their begin that no piece is an arc, a line leads to it.
     fn add(&mut self, from: f64, until: f64, with: &Circumstances) -> Result<(), PathError> {
-        self.take_up(from, with)?;
+        self.take_up(from, with, JUMP)?;
         let mut start = from;
         let mut pending = vec![until];
         while let Some(end) = pending.last().copied() {
@@ -159,7 +160,10 @@ impl Pieces<'_> {
                 self.all.push(Piece::Arc(piece));
                 start = end;
             } else if part.sweep.abs() < MIN_SWEEP {
-                return Err(PathError::NotAnArc);
+                if start > from || !self.take_up(from, with, 0.0)? {
+                    return Err(PathError::NotAnArc);
+                }
+                pending = vec![until];
             } else {
                 pending.push(f64::midpoint(start, end));
             }
@@ -167,14 +171,21 @@ impl Pieces<'_> {
         Ok(())
     }
 
-    /// A line to where K of the new direction puts the place, where that is not about where the machine stands.
-    fn take_up(&mut self, fraction: f64, with: &Circumstances) -> Result<(), PathError> {
+    /// A line to where K of the new direction puts the place, where the machine stands farther from it than a share of the tolerance;
+    /// true where it does.
+    fn take_up(
+        &mut self,
+        fraction: f64,
+        with: &Circumstances,
+        share: f64,
+    ) -> Result<bool, PathError> {
         let to = self.arc.at(fraction);
         let corrected = to + self.terms.correction(&to, with)?;
-        if self.tolerance.share(&(corrected - self.written)) > JUMP {
+        let is_off = self.tolerance.share(&(corrected - self.written)) > share;
+        if is_off {
             self.written = corrected;
             self.all.push(Piece::Line { to, corrected });
         }
-        Ok(())
+        Ok(is_off)
     }
 }
