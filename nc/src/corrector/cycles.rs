@@ -26,8 +26,8 @@ struct Held {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sticky {
     held: [Option<Held>; AXES],
-    /// R of a drilling cycle.
-    retract: Option<f64>,
+    /// R of a drilling cycle, and whether it is a way.
+    retract: Option<(f64, bool)>,
     /// The cycle is of one block.
     pub once: bool,
 }
@@ -84,6 +84,16 @@ impl Task<'_> {
             });
         }
         *held
+    }
+
+    /// What was said as a place is read as a way by some controls after G91, as a place by others; and the other way round.
+    fn check_mode(&self, said_as_way: bool) -> Result<(), Found> {
+        if said_as_way == self.now.modes.incremental {
+            return Ok(());
+        }
+        let what =
+            "a word of the cycle that holds from before G90 or G91: write it again in this block";
+        Err((self.at(), Reason::Unsupported(what)))
     }
 
     /// Writes the word of a cycle's place, or adds it where the one that holds says something else.

@@ -62,6 +62,35 @@ fn drilling_by_ways() {
     assert!(repeated.contains("a cycle repeated by ways"), "{repeated}");
 }
 
+/// Controls differ in what they make of it.
+#[test]
+fn a_depth_or_r_of_before_g90_or_g91_is_asked_for_anew() {
+    let terms = || slope(Z, X, 0.001);
+    let holding =
+        "a word of the cycle that holds from before G90 or G91: write it again in this block";
+    for second in ["G91 X10", "G91 X10 Z-22", "G91 X10 R-1"] {
+        let program = format!("G0 X100 Y0 Z50\nG99 G81 X110 Z-20 R2 F100\n{second}\n");
+        let refusal = refused("linuxcnc-mill", terms(), &program);
+        assert!(
+            refusal.starts_with("3:") && refusal.contains(holding),
+            "{refusal}"
+        );
+    }
+    let refusal = refused(
+        "linuxcnc-mill",
+        terms(),
+        "G0 X100 Y0 Z50\nG91 G99 G81 X10 R-48 Z-22 F100\nG90 X120\n",
+    );
+    assert!(refusal.contains(holding), "{refusal}");
+    // R stays 2, so the way to the bottom at X 120 has all of K.
+    let out = correct(
+        "linuxcnc-mill",
+        terms(),
+        "G0 X100 Y0 Z50\nG99 G81 X110 Z-20 R2 F100\nG91 X10 Z-22 R-1\n",
+    );
+    assert!(out.ends_with("\nG91 X10 Z-21.88 R-1\n"), "{out}");
+}
+
 #[test]
 fn threading_of_linuxcnc_corrects_its_end_alone() {
     let terms = || constant(&[(X, 0.01), (Z, 0.02)]);

@@ -32,17 +32,23 @@ impl Task<'_> {
             ));
         };
         self.hold_retract()?;
+        self.check_mode(held.as_way)?;
+        let said_retract = self.now.cycle.retract;
+        if let Some((_, as_way)) = said_retract {
+            self.check_mode(as_way)?;
+        }
+        let said_retract = said_retract.map(|(said, _)| said);
         let state = self.now.axes[z];
         // R counts from where the tool stands, Z from R, where words are ways.
         let retract = if self.now.modes.incremental {
-            let way = self.now.cycle.retract.unwrap_or(0.0);
+            let way = said_retract.unwrap_or(0.0);
             state.program.map(|from| from + way)
         } else {
-            self.now.cycle.retract
+            said_retract
         };
         let mut bottom = goals;
         if held.as_way {
-            let way = self.now.cycle.retract.unwrap_or(0.0) + held.said;
+            let way = said_retract.unwrap_or(0.0) + held.said;
             bottom[z].program = state.program.map(|from| from + way);
             bottom[z].machine = state.machine.map(|from| from + way);
         } else {
@@ -76,7 +82,8 @@ impl Task<'_> {
         match parameter(self.block, b'R') {
             Said::Nothing => Ok(()),
             Said::Number(number) => {
-                self.now.cycle.retract = Some(self.scale(Axis::Z).read(number));
+                let said = self.scale(Axis::Z).read(number);
+                self.now.cycle.retract = Some((said, self.now.modes.incremental));
                 Ok(())
             }
             Said::Unknown => Err((self.at(), Reason::Expression('R'))),

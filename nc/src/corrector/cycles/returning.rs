@@ -19,6 +19,9 @@ impl Task<'_> {
             let Some(held) = self.hold(axis, &goals[axis.index()]) else {
                 continue;
             };
+            if !held.as_way {
+                self.check_mode(false)?;
+            }
             targets = targets.with(axis);
             self.reach(axis, &held, &mut ends[axis.index()]);
         }
