@@ -1,8 +1,11 @@
-//! CSV with a header line: columns by name, numbers with their place where they are wrong.
+//! CSV with a header line: columns by name, numbers with their place where they are wrong. `checks` says what is no such table.
+
+mod checks;
 
 use std::ops::Range;
 
-use crate::source::{Complaint, Place};
+use crate::source::{Complaint, Place, number_of};
+use checks::{check_header, check_length};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// A text as records.
@@ -24,7 +27,8 @@ impl<'t> CsvText<'t> {
     /// Reads a text whose header has `needed` columns and may have `optional` ones. Lines that begin with # are comments.
     ///
     /// # Errors
-    /// With line and column: no CSV, a column that is missing, unknown or there twice.
+    /// With line and column: no CSV, fields that something else than commas parts, a column that is missing, unknown or there
+    /// twice.
     pub fn read(text: &'t str, needed: &[&str], optional: &[&str]) -> Result<Self, Complaint> {
         let mut reader = ReaderBuilder::new()
             .comment(Some(b'#'))
@@ -33,37 +37,11 @@ impl<'t> CsvText<'t> {
             .from_reader(text.as_bytes());
         let header = reader.headers().map_err(|error| complaint(&error))?.clone();
         let columns: Vec<_> = header.iter().map(str::to_lowercase).collect();
-        let known = || needed.iter().chain(optional).copied();
-        for (at, column) in columns.iter().enumerate() {
-            let place = || field(text, &header, at);
-            if !known().any(|known| known == column) {
-                let known = known().collect::<Vec<_>>().join(", ");
-                let message = format!("column \"{column}\" is not known: expected {known}");
-                return Err(Complaint::at(text, &place(), message));
-            }
-            if columns[..at].contains(column) {
-                let message = format!("column \"{column}\" is there twice");
-                return Err(Complaint::at(text, &place(), message));
-            }
-        }
-        if let Some(missing) = needed
-            .iter()
-            .find(|needed| !columns.iter().any(|column| column == *needed))
-        {
-            let message = format!(
-                "there is no column \"{missing}\": the header is to be {}",
-                needed.join(",")
-            );
-            return Err(Complaint::at(text, &field(text, &header, 0), message));
-        }
+        check_header(text, &header, &columns, needed, optional)?;
         let mut records = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| complaint(&error))?;
-            if record.len() != columns.len() {
-                let (found, expected) = (record.len(), columns.len());
-                let message = format!("{found} fields, and the header has {expected} columns");
-                return Err(Complaint::at(text, &field(text, &record, 0), message));
-            }
+            check_length(text, &record, columns.len())?;
             records.push(record);
         }
         Ok(Self {
@@ -108,13 +86,18 @@ impl Row<'_> {
     /// No number, or out of range.
     pub fn number(&self, column: &str, (min, max): (f64, f64)) -> Result<f64, Complaint> {
         let text = self.text(column);
-        let value: f64 = text.parse().map_err(|_| {
-            self.complain(column, format!("{column} = \"{text}\": expected a number"))
+        let value = number_of(text).map_err(|expected| {
+            self.complain(column, format!("{column} = \"{text}\": {expected}"))
         })?;
-        if (min..=max).contains(&value) {
+        if value.is_finite() && (min..=max).contains(&value) {
             return Ok(value);
         }
-        let message = format!("{column} = {text} is out of range: allowed {min} to {max}");
+        let expected = if (min, max) == (f64::MIN, f64::MAX) {
+            "expected a finite number".to_owned()
+        } else {
+            format!("allowed {min} to {max}")
+        };
+        let message = format!("{column} = {text} is out of range: {expected}");
         Err(self.complain(column, message))
     }
 
@@ -123,14 +106,10 @@ impl Row<'_> {
     /// # Errors
     /// Something else.
     pub fn optional_number(&self, column: &str) -> Result<Option<f64>, Complaint> {
-        let text = self.text(column);
-        if text.is_empty() {
+        if self.text(column).is_empty() {
             return Ok(None);
         }
-        let finite = text.parse().ok().filter(|number: &f64| number.is_finite());
-        finite
-            .map(Some)
-            .ok_or_else(|| self.complain(column, format!("`{text}`: expected a number")))
+        self.number(column, (f64::MIN, f64::MAX)).map(Some)
     }
 
     /// What is wrong with a field.
@@ -222,7 +201,7 @@ mod tests {
         assert_eq!(first.optional_number("x").unwrap(), Some(1.5));
         assert_eq!(first.optional_number("y").unwrap(), None);
         let error = second.optional_number("x").unwrap_err();
-        assert_eq!(error.to_string(), "5:3: `zwei`: expected a number");
+        assert_eq!(error.to_string(), "5:3: x = \"zwei\": expected a number");
         assert_eq!(first.complain("x", "here").to_string(), "4:9: here");
         assert_eq!(table.complain_of_header("no").to_string(), "2:1: no");
     }
@@ -232,16 +211,73 @@ mod tests {
         let message = |text| read(text).map(|_| ()).unwrap_err().to_string();
         assert_eq!(
             message(""),
+            "1:1: the file is empty: expected the header name"
+        );
+        assert_eq!(
+            message("# only\n\n"),
+            "3:1: the file is empty: expected the header name"
+        );
+        assert_eq!(
+            message("x"),
             "1:1: there is no column \"name\": the header is to be name"
         );
         assert_eq!(
             message("name,z"),
             "1:6: column \"z\" is not known: expected name, x, y"
         );
-        assert_eq!(message("name,x,x"), "1:8: column \"x\" is there twice");
+        assert_eq!(
+            message("name,x,x"),
+            "1:8: column \"x\" is there twice: leave one"
+        );
         assert_eq!(
             message("name,x\na,1,2\n"),
-            "2:1: 3 fields, and the header has 2 columns"
+            "2:3: 3 fields, and the header has 2 columns: has a number a decimal comma? It is to be a point, 1.2"
         );
+        assert_eq!(
+            message("name,x\n3,1,2\n"),
+            "2:1: 3 fields, and the header has 2 columns: has a number a decimal comma? It is to be a point, 12.5"
+        );
+        assert_eq!(
+            message("name,x\na,b,2\n"),
+            "2:1: 3 fields, and the header has 2 columns: a field with a comma in it is to stand in quotes"
+        );
+        assert_eq!(
+            message("name,x\na\n"),
+            "2:1: 1 field, and the header has 2 columns"
+        );
+        assert_eq!(
+            message("name, nmae"),
+            "1:7: column \"nmae\" is not known: expected name, x, y; did you mean name?"
+        );
+    }
+
+    #[test]
+    fn what_parts_the_fields_instead_of_commas_is_named() {
+        for (delimiter, name) in [(";", "semicolons"), ("\t", "tabs"), ("|", "bars")] {
+            let text = format!("# a;b\nname{delimiter}x\na{delimiter}1\n");
+            let error = read(&text).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("2:5: {name} part")), "{error}");
+            let row = format!("name,x\na{delimiter}1,5\nb{delimiter}2\n");
+            let error = read(&row).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("3:2: {name} part")), "{error}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite_and_have_a_point() {
+        let said = |number: &str| {
+            let text = format!("name,x\na,{number}\n");
+            let table = read(&text).unwrap();
+            let row = table.rows().next().unwrap();
+            row.optional_number("x").unwrap_err().to_string()
+        };
+        assert_eq!(
+            said("\"12,5\""),
+            "2:3: x = \"12,5\": expected a number with a decimal point, 12.5"
+        );
+        for number in ["nan", "-inf", "1e999"] {
+            let expected = format!("2:3: x = {number} is out of range: expected a finite number");
+            assert_eq!(said(number), expected);
+        }
     }
 }

@@ -1,10 +1,22 @@
 //! What is wrong in a text, and where: the same for programs, settings and tables.
 
+mod encoding;
+mod words;
+
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
+
+pub use encoding::{UTF_8_MARK, text_of, wide_mark};
+pub use words::{decimal_comma, nearest, number_of, toml_message};
+
+/// A message that is longer is shown without its middle, characters.
+const LONGEST_MESSAGE: usize = 800;
+/// What is shown of the beginning and the end of such a one, characters.
+const SHOWN: (usize, usize) = (80, 320);
 
 /// A place in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,11 +68,31 @@ impl Complaint {
 impl fmt::Display for Complaint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Place { line, column } = self.place;
-        write!(f, "{line}:{column}: {}", self.message)
+        write!(f, "{line}:{column}: {}", one_line(&self.message))
     }
 }
 
 impl std::error::Error for Complaint {}
+
+/// A message as one line of a length that can be read: what was found in a file may be long, or have line ends in it.
+fn one_line(message: &str) -> Cow<'_, str> {
+    let count = message.chars().count();
+    if count <= LONGEST_MESSAGE && !message.contains(char::is_control) {
+        return Cow::Borrowed(message);
+    }
+    let shown = |c: char| match c {
+        '\t' | '\n' | '\r' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    let characters = || message.chars().map(shown);
+    if count <= LONGEST_MESSAGE {
+        return characters().collect();
+    }
+    let (first, last) = SHOWN;
+    let beginning = characters().take(first).chain(" … ".chars());
+    beginning.chain(characters().skip(count - last)).collect()
+}
 
 /// A TOML text as the type that derives [`serde::Deserialize`]; values whose range is checked later keep their place as
 /// [`toml::Spanned`].
@@ -72,7 +104,7 @@ pub fn read_toml<T: DeserializeOwned>(text: &str) -> Result<T, Complaint> {
         Complaint::at(
             text,
             &error.span().unwrap_or(0..0),
-            error.message().to_owned(),
+            toml_message(text, &error),
         )
     })
 }
@@ -111,6 +143,15 @@ mod tests {
         assert_eq!(place(3), (1, 3));
         assert_eq!(place(4), (2, 1));
         assert_eq!(place(99), (2, 3));
+    }
+
+    #[test]
+    fn what_a_file_says_does_not_break_or_swamp_the_message() {
+        let shown = |message: &str| Complaint::at("", &(0..0), message).to_string();
+        assert_eq!(shown("`a\n\tb\0`: no"), "1:1: `a  b\u{fffd}`: no");
+        let long = shown(&format!("`{}`: expected a number", "ä".repeat(1_000_000)));
+        assert_eq!(long.chars().count(), "1:1: ".len() + SHOWN.0 + 3 + SHOWN.1);
+        assert!(long.starts_with("1:1: `ä") && long.ends_with("ä`: expected a number"));
     }
 
     #[test]

@@ -10,7 +10,7 @@
 
 use std::fmt::Write;
 
-use leadscrew_nc::source::{Complaint, Place};
+use leadscrew_nc::source::Complaint;
 
 use leadscrew_nc::csv_text::{CsvText, Row};
 
@@ -86,10 +86,9 @@ impl Runs {
         let optional = ["reading_mm", "deviation_um", "temperature_c"];
         let csv = CsvText::read(text, &needed, &optional)?;
         if csv.has("reading_mm") == csv.has("deviation_um") {
-            return Err(Complaint {
-                place: Place { line: 1, column: 1 },
-                message: "expected one of the columns reading_mm and deviation_um".to_owned(),
-            });
+            return Err(
+                csv.complain_of_header("expected one of the columns reading_mm and deviation_um")
+            );
         }
         let mut runs = Self::default();
         for row in csv.rows() {

@@ -84,11 +84,12 @@ fn wrong_runs_are_refused_with_line_and_column() {
             .to_string()
             .starts_with("1:1: expected one of the columns reading_mm and deviation_um")
     );
+    let commented = Runs::read("# of X\n# laser\ntarget_mm,direction,run\n").unwrap_err();
+    assert!(commented.to_string().starts_with("3:1: expected one of"));
+    let empty = Runs::read("").unwrap_err().to_string();
     assert!(
-        Runs::read("")
-            .unwrap_err()
-            .to_string()
-            .contains("there is no column")
+        empty.starts_with("1:1: the file is empty: expected the header target_mm,direction,run"),
+        "{empty}"
     );
 }
 

@@ -4,7 +4,7 @@
 //! coordinates that the program works in. A touch at exactly the place of the one before writes no line, so that every line is
 //! held against its planned place.
 
-use leadscrew_nc::source::Complaint;
+use leadscrew_nc::source::{Complaint, number_of};
 
 use super::{Part, Planned, Touches};
 use crate::metrology::touch::{Touch, vector3};
@@ -79,15 +79,14 @@ fn place(text: &str, start: usize, line: &str) -> Result<[f64; 3], Complaint> {
         at += line[at..].find(word).unwrap_or(0);
         let span = start + at..start + at + word.len();
         at += word.len();
-        let number: Option<f64> = word.parse().ok();
-        let Some(number) = number.filter(|number| number.is_finite()) else {
-            return Err(Complaint::at(
-                text,
-                &span,
-                format!("`{word}`: expected a number"),
-            ));
-        };
-        numbers.push(number);
+        let number = number_of(word).and_then(|number| {
+            let finite = number.is_finite().then_some(number);
+            finite.ok_or_else(|| "expected a finite number".to_owned())
+        });
+        numbers.push(
+            number
+                .map_err(|expected| Complaint::at(text, &span, format!("`{word}`: {expected}")))?,
+        );
     }
     if numbers.len() != NUMBERS {
         let message = format!(

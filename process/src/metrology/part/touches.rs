@@ -109,10 +109,14 @@ impl Reader<'_> {
             let known: Vec<&str> = touched()
                 .map(|(_, feature)| feature.name.as_str())
                 .collect();
-            let message = format!(
-                "`{}`: the part has no such feature to touch; it has {}",
-                row.text("feature"),
+            let has = if known.is_empty() {
+                "none: add features to its file".to_owned()
+            } else {
                 known.join(", ")
+            };
+            let message = format!(
+                "`{}`: the part has no such feature to touch; it has {has}",
+                row.text("feature")
             );
             row.complain("feature", message)
         })
