@@ -16,6 +16,9 @@ pub enum CommandError {
     /// A capture cannot be read.
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
+    /// A file gives no text.
+    #[error(transparent)]
+    TextFile(#[from] crate::text_file::TextFileError),
     /// A machine or a scenario file cannot be used.
     #[error(transparent)]
     TomlFile(#[from] crate::toml_file::TomlFileError),

@@ -35,6 +35,7 @@ pub mod simulated_axis;
 pub mod simulation;
 pub mod statistics;
 pub mod tacho_watch;
+pub mod text_file;
 pub mod threads;
 pub mod toml_file;
 pub mod tracking;

@@ -6,6 +6,7 @@ use std::path::Path;
 use leadscrew::parameter_table::{Field, ParameterTable};
 use leadscrew_hal_mock::machine::MachineParams;
 use leadscrew_hal_mock::scenario::{Base, MACHINE_SECTIONS, Visitor, visit_machine};
+use leadscrew_nc::source::nearest;
 use toml::de::{DeTable, DeValue};
 
 use crate::toml_file::{self, Complaint, TomlFileError, fill, suggestion};
@@ -86,7 +87,7 @@ impl Visitor for Fill<'_> {
 pub(crate) fn stray_key(name: &str, known: &[&str], others: &[&str]) -> String {
     if known.contains(&name) {
         format!("`{name}` is a section: write [{name}] and its keys below it")
-    } else if let Some(near) = others.iter().find(|other| strsim::jaro(name, other) > 0.8) {
+    } else if let Some(near) = nearest(name, others.iter().copied()) {
         format!("unknown key `{name}` above the sections: did you mean `{near}`?")
     } else {
         let alone = others.iter().map(|other| format!("`{other}`"));

@@ -4,21 +4,19 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use leadscrew::parameter_table::{Field, ParameterTable};
+use leadscrew_nc::source::{nearest, toml_message};
 use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::text_file::{self, TextFileError};
+
 /// Why a TOML file cannot be used.
 #[derive(Debug, Error)]
 pub enum TomlFileError {
-    /// It cannot be read.
-    #[error("{}: cannot be read ({reason}): check the path and its permissions", file.display())]
-    Read {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        reason: std::io::Error,
-    },
+    /// It gives no text.
+    #[error(transparent)]
+    Text(#[from] TextFileError),
     /// It says something that is not understood or not allowed.
     #[error("{}:{line}: {message}", file.display())]
     Content {
@@ -51,10 +49,7 @@ pub(crate) fn read<T>(
     path: &Path,
     parse: impl FnOnce(&str) -> Result<T, Complaint>,
 ) -> Result<T, TomlFileError> {
-    let text = std::fs::read_to_string(path).map_err(|reason| TomlFileError::Read {
-        file: path.to_owned(),
-        reason,
-    })?;
+    let text = text_file::read(path)?;
     parse(&text).map_err(|Complaint { at, message }| TomlFileError::Content {
         file: path.to_owned(),
         line: 1 + text.get(..at.start).unwrap_or(&text).matches('\n').count(),
@@ -65,7 +60,7 @@ pub(crate) fn read<T>(
 /// The document in a text.
 pub(crate) fn document(text: &str) -> Result<Spanned<DeTable<'_>>, Complaint> {
     DeTable::parse(text)
-        .map_err(|error| Complaint::new(error.span().unwrap_or(0..0), error.message().to_owned()))
+        .map_err(|error| Complaint::new(error.span().unwrap_or(0..0), toml_message(text, &error)))
 }
 
 /// Sets the keys of a section.
@@ -145,11 +140,8 @@ fn rule(name: &str) -> Option<(Holds, &'static str)> {
 /// «: did you mean …?» for a word close to a known one, else the known ones.
 pub(crate) fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    let nearest = known
-        .iter()
-        .max_by(|a, b| strsim::jaro(word, a).total_cmp(&strsim::jaro(word, b)));
-    match nearest {
-        Some(near) if strsim::jaro(word, near) > 0.8 => format!(": did you mean `{near}`?"),
-        _ => format!(": expected one of {}", known.join(", ")),
+    match nearest(word, known.iter().copied()) {
+        Some(near) => format!(": did you mean `{near}`?"),
+        None => format!(": expected one of {}", known.join(", ")),
     }
 }

@@ -1,7 +1,6 @@
 //! `leadscrew calibrate-probe`: trigger delay, stylus and run-out of a touch probe from tables of touches.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
 use leadscrew_process::metrology::fitted::{Quality, Settings};
@@ -14,6 +13,7 @@ use serde::Serialize;
 use super::{print, print_json};
 use crate::cli::{CalibrateProbeCommand, FitArgs};
 use crate::error::CommandError;
+use crate::text_file;
 
 /// Degrees from one row of the table of the radius to the next.
 const STEP_DEG: u32 = 30;
@@ -92,9 +92,7 @@ fn read<T>(
     path: &Path,
     parse: impl Fn(&str) -> Result<Vec<T>, leadscrew_nc::source::Complaint>,
 ) -> Result<Vec<T>, CommandError> {
-    let text = fs::read_to_string(path)
-        .map_err(|error| data(format!("{}: cannot be read: {error}", path.display())))?;
-    parse(&text).map_err(CommandError::content(path))
+    parse(&text_file::read(path)?).map_err(CommandError::content(path))
 }
 
 /// What was found, with what it is.

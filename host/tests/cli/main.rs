@@ -3,6 +3,7 @@
 mod accuracy;
 mod autotune;
 mod axis;
+mod bad_files;
 mod calibrate_axis;
 mod calibrate_encoder;
 mod calibrate_probe;

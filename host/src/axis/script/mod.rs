@@ -11,6 +11,7 @@ pub use parse::{assignments, parse};
 pub use run::{Done, Failure, Run, check, clear, run};
 
 use crate::error::CommandError;
+use crate::text_file;
 
 /// A script that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,11 +99,7 @@ impl Script {
     /// It cannot be read; file, line and what was expected.
     pub fn read(file: &Path) -> Result<Self, CommandError> {
         let shown = file.display();
-        let text = std::fs::read_to_string(file).map_err(|reason| {
-            CommandError::Usage(format!(
-                "{shown}: cannot be read ({reason}): check the path and its permissions"
-            ))
-        })?;
+        let text = text_file::read(file).map_err(|error| CommandError::Usage(error.to_string()))?;
         let steps = parse(&text)
             .map_err(|(line, message)| CommandError::Usage(format!("{shown}:{line}: {message}")))?;
         Ok(Self {

@@ -11,7 +11,7 @@ use crate::axis::values::named_request;
 use crate::cli::{JsonArgs, ScrewTableCommand};
 use crate::command::{check_replaceable, print, print_json, write_file};
 use crate::error::CommandError;
-use crate::toml_file::TomlFileError;
+use crate::text_file;
 
 /// What was done.
 #[derive(Serialize)]
@@ -52,11 +52,7 @@ pub fn run(axis: &mut Axis, command: &ScrewTableCommand) -> Result<(), CommandEr
 }
 
 fn read_file(file: &Path) -> Result<ErrorTable, CommandError> {
-    let text = std::fs::read_to_string(file).map_err(|reason| TomlFileError::Read {
-        file: file.to_owned(),
-        reason,
-    })?;
-    ErrorTable::read(&text).map_err(CommandError::content(file))
+    ErrorTable::read(&text_file::read(file)?).map_err(CommandError::content(file))
 }
 
 fn write(axis: &mut Axis, file: &Path, output: &JsonArgs) -> Result<(), CommandError> {

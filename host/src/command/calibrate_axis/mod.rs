@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::{check_outputs_of, check_replaceable, print, print_json, write_file};
 use crate::cli::CalibrateAxisArgs;
 use crate::error::CommandError;
-use crate::toml_file::TomlFileError;
+use crate::text_file;
 
 /// What was found.
 #[derive(Serialize)]
@@ -43,11 +43,8 @@ pub fn run(args: &CalibrateAxisArgs) -> Result<(), CommandError> {
         temperature_c: args.temperature,
     };
     let expansion = expansion.check().map_err(usage)?;
-    let text = std::fs::read_to_string(&args.file).map_err(|reason| TomlFileError::Read {
-        file: args.file.clone(),
-        reason,
-    })?;
-    let runs = Runs::read(&text).map_err(CommandError::content(&args.file))?;
+    let runs =
+        Runs::read(&text_file::read(&args.file)?).map_err(CommandError::content(&args.file))?;
     let calibration = Calibration::of(&runs, &expansion, !args.accept_few)
         .map_err(|error| unfit(&args.file, &error.to_string(), "--accept-few"))?;
     let alias = alias(args, &calibration)?;

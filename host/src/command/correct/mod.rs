@@ -2,7 +2,7 @@
 
 mod report;
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
@@ -10,6 +10,7 @@ use std::time::Instant;
 use leadscrew_nc::corrector::{self, CorrectError, Corrector};
 use leadscrew_nc::dialect::Dialect;
 use leadscrew_nc::setup::Setup;
+use leadscrew_nc::source::{UTF_8_MARK, wide_mark};
 use leadscrew_nc::terms::Terms;
 use leadscrew_nc::terms::watch::Largest;
 
@@ -17,6 +18,7 @@ use self::report::{Memory, Report};
 use super::{check_replaceable, print, print_json};
 use crate::cli::CorrectArgs;
 use crate::error::CommandError;
+use crate::text_file::{self, TextFileError};
 use crate::whole_file;
 
 /// How much is read and written at a time: large enough for the disk's speed, small beside any program.
@@ -91,11 +93,14 @@ fn check_arguments(args: &CorrectArgs) -> Result<(), CommandError> {
 
 /// What corrects, and what its terms come to.
 fn corrector(args: &CorrectArgs) -> Result<(Corrector, Vec<Largest>), CommandError> {
-    let text = read(&args.setup)?;
+    let text = text_file::read(&args.setup)?;
     let folder = args.setup.parent().unwrap_or(Path::new(""));
     let files = |name: &str| {
-        fs::read_to_string(folder.join(name)).map_err(|error| {
-            format!("{name}: cannot be read ({error}): it is looked for beside the setup")
+        text_file::read(&folder.join(name)).map_err(|error| match error {
+            TextFileError::Read { reason, .. } => {
+                format!("{name}: cannot be read ({reason}): it is looked for beside the setup")
+            }
+            TextFileError::Encoding { complaint, .. } => format!("{name}:{complaint}"),
         })
     };
     let setup = Setup::read(&text, &files).map_err(CommandError::content(&args.setup))?;
@@ -137,7 +142,7 @@ fn dialect(args: &CorrectArgs, setup: &Setup) -> Result<Dialect, CommandError> {
         .extension()
         .is_some_and(|extension| extension == "toml")
     {
-        return Dialect::from_toml(&read(path)?).map_err(CommandError::content(path));
+        return Dialect::from_toml(&text_file::read(path)?).map_err(CommandError::content(path));
     }
     Err(CommandError::Usage(format!(
         "--dialect {name}: expected one of {}, or a file FILE.toml",
@@ -149,17 +154,6 @@ fn known() -> String {
     Dialect::names().collect::<Vec<_>>().join(", ")
 }
 
-fn unreadable(path: &Path, reason: &io::Error) -> CommandError {
-    CommandError::Data(format!(
-        "{}: cannot be read ({reason}): check the path and its permissions",
-        path.display()
-    ))
-}
-
-fn read(path: &Path) -> Result<String, CommandError> {
-    fs::read_to_string(path).map_err(|reason| unreadable(path, &reason))
-}
-
 /// Corrects from the program into a writer.
 fn correct(
     args: &CorrectArgs,
@@ -169,7 +163,7 @@ fn correct(
     if is_standard(&args.program) {
         return from(args, io::stdin().lock(), corrector, writer);
     }
-    let file = File::open(&args.program).map_err(|reason| unreadable(&args.program, &reason))?;
+    let file = File::open(&args.program).map_err(TextFileError::read(&args.program))?;
     from(
         args,
         BufReader::with_capacity(BUFFER, file),
@@ -180,23 +174,41 @@ fn correct(
 
 fn from(
     args: &CorrectArgs,
-    reader: impl BufRead,
+    mut reader: impl BufRead,
     corrector: &mut Corrector,
-    writer: impl Write,
+    mut writer: impl Write,
 ) -> Result<corrector::Report, CommandError> {
     let name = if is_standard(&args.program) {
-        "standard input".to_owned()
+        Path::new("standard input")
     } else {
-        args.program.display().to_string()
+        &args.program
     };
-    corrector::correct(reader, writer, corrector).map_err(|error| match error {
-        CorrectError::Refused(refusal) => CommandError::Data(format!("{name}:{refusal}")),
-        CorrectError::Read(reason) => {
-            CommandError::Data(format!("{name}: cannot be read ({reason})"))
+    let failed = |error| match error {
+        CorrectError::Refused(refusal) => {
+            CommandError::Data(format!("{}:{refusal}", name.display()))
         }
+        CorrectError::Read(reason) => TextFileError::read(name)(reason).into(),
         CorrectError::Write(reason) if is_standard(&args.out) => CommandError::Print(reason),
         CorrectError::Write(reason) => CommandError::write(&args.out)(reason),
-    })
+    };
+    let start = reader
+        .fill_buf()
+        .map_err(|reason| failed(CorrectError::Read(reason)))?;
+    wide_mark(start).map_err(CommandError::content(name))?;
+    // The mark of UTF-8 is no part of the first block; the control gets it as it was.
+    let mark = if start.starts_with(UTF_8_MARK) {
+        UTF_8_MARK
+    } else {
+        &[]
+    };
+    reader.consume(mark.len());
+    writer
+        .write_all(mark)
+        .map_err(|reason| failed(CorrectError::Write(reason)))?;
+    let mut report = corrector::correct(reader, writer, corrector).map_err(failed)?;
+    report.bytes_read += mark.len() as u64;
+    report.bytes_written += mark.len() as u64;
+    Ok(report)
 }
 
 /// The file appears when the last block is corrected, or not at all.

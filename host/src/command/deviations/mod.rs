@@ -3,7 +3,6 @@
 mod picture;
 mod report;
 
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
@@ -16,6 +15,7 @@ use self::report::Report;
 use super::{check_outputs_of, print, print_json};
 use crate::cli::DeviationsArgs;
 use crate::error::CommandError;
+use crate::text_file::{self, TextFileError};
 use crate::whole_file;
 
 /// Most places of a grid that is shown or drawn.
@@ -75,11 +75,14 @@ pub(super) fn load(name: &str) -> Result<Loaded, CommandError> {
         return deviations::read(text).map_err(|error| data(format!("{name}:{error}")));
     }
     let path = Path::new(name);
-    let text = fs::read_to_string(path).map_err(|error| {
-        let known = BUILT_IN.map(|(known, _)| known).join(", ");
-        data(format!(
-            "{name}: cannot be read ({error}): give a machine file, or one of {known}"
-        ))
+    let text = text_file::read(path).map_err(|error| match error {
+        TextFileError::Read { reason, .. } => {
+            let known = BUILT_IN.map(|(known, _)| known).join(", ");
+            data(format!(
+                "{name}: cannot be read ({reason}): give a machine file, or one of {known}"
+            ))
+        }
+        error @ TextFileError::Encoding { .. } => error.into(),
     })?;
     deviations::read(&text).map_err(CommandError::content(path))
 }

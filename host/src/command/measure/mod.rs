@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{check_outputs_of, print, print_json, write_file};
 use crate::cli::MeasureArgs;
 use crate::error::CommandError;
-use crate::toml_file::TomlFileError;
+use crate::text_file;
 
 /// The features with what they are.
 #[derive(Serialize)]
@@ -30,16 +30,18 @@ struct Report<'r> {
 /// Bad usage, files that cannot be read or do not go together, features that are not determined.
 pub fn run(args: &MeasureArgs) -> Result<(), CommandError> {
     check(args)?;
-    let text = read(&args.part)?;
+    let text = text_file::read(&args.part)?;
     let part = part::read(&text).map_err(CommandError::content(&args.part))?;
     if let Some(path) = &args.program {
         return write_program(args, &text, &part, path);
     }
     let touches = match (&args.touches, &args.log) {
         (Some(file), _) => {
-            touches::read(&read(file)?, &part).map_err(CommandError::content(file))?
+            touches::read(&text_file::read(file)?, &part).map_err(CommandError::content(file))?
         }
-        (_, Some(file)) => log::read(&read(file)?, &part).map_err(CommandError::content(file))?,
+        (_, Some(file)) => {
+            log::read(&text_file::read(file)?, &part).map_err(CommandError::content(file))?
+        }
         (None, None) => {
             let text = "expected --touches FILE.csv, --log FILE.txt or --program FILE.ngc";
             return Err(CommandError::Usage(text.to_owned()));
@@ -80,13 +82,6 @@ fn check(args: &MeasureArgs) -> Result<(), CommandError> {
         )?;
     }
     Ok(())
-}
-
-fn read(file: &Path) -> Result<String, CommandError> {
-    std::fs::read_to_string(file).map_err(|reason| {
-        let file = file.to_owned();
-        TomlFileError::Read { file, reason }.into()
-    })
 }
 
 fn write_program(

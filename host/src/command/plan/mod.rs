@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::{check_outputs_of, print, print_json};
 use crate::cli::PlanArgs;
 use crate::error::CommandError;
-use crate::toml_file::TomlFileError;
+use crate::text_file;
 
 /// The figures of machines.
 #[derive(Serialize)]
@@ -79,11 +79,9 @@ fn catalogue(args: &PlanArgs) -> Result<Catalogue, CommandError> {
     let mut catalogue =
         Catalogue::built_in().map_err(|complaint| CommandError::Data(complaint.to_string()))?;
     for file in &args.catalogue {
-        let text = std::fs::read_to_string(file).map_err(|reason| TomlFileError::Read {
-            file: file.clone(),
-            reason,
-        })?;
-        catalogue.add(&text).map_err(CommandError::content(file))?;
+        catalogue
+            .add(&text_file::read(file)?)
+            .map_err(CommandError::content(file))?;
     }
     Ok(catalogue)
 }
