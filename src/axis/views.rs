@@ -51,7 +51,8 @@ impl Axis<'_> {
         self.config.controller.notice_ticks()
     }
 
-    /// What of the last command an observer of the nominal drive is not told: see [`Controller::withheld`].
+    /// What of the last command an observer of the nominal drive is not told: see
+    /// [`Controller::withheld`](crate::controller::Controller::withheld).
     #[must_use]
     pub const fn withheld(&self) -> Command {
         self.controller.withheld()
