@@ -7,7 +7,7 @@
 //! corrected by the certified map before anything is computed from them, and K = −Δ of the map is a term of its own.
 //!
 //! [`World`] is the truth, by full rotations: the `part`, the `amounts` that are wrong, what was `cut`. [`gauge`] turns touches into
-//! places, `compute` places into terms, `correct` puts these into the program, [`figures`] tells what came of it.
+//! places, `compute` places into terms, `correct` puts these into the program, `figures` tells what came of it.
 
 mod amounts;
 mod compute;
