@@ -5,6 +5,8 @@ mod known_terms;
 
 #[path = "hazards/additions.rs"]
 mod additions;
+#[path = "hazards/arc_ends.rs"]
+mod arc_ends;
 #[path = "hazards/arcs.rs"]
 mod arcs;
 #[path = "hazards/cycles.rs"]
@@ -21,6 +23,8 @@ mod refusals;
 mod reversals;
 #[path = "hazards/splitting.rs"]
 mod splitting;
+#[path = "hazards/tool_length.rs"]
+mod tool_length;
 #[path = "hazards/turning.rs"]
 mod turning;
 

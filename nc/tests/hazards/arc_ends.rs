@@ -1,40 +1,17 @@
 //! What a control makes of the arcs that are written: from the ends in whole steps it must find the angle that is meant, never a
 //! full circle for a short arc, nor nothing for a full circle.
 
-#[path = "support/known_terms.rs"]
-mod known_terms;
-
 use std::f64::consts::{PI, TAU};
 
-use known_terms::{constant, slope, square};
 use leadscrew_nc::coordinates::Axis::{self, X, Y, Z};
-use leadscrew_nc::corrector::Corrector;
-use leadscrew_nc::dialect::Dialect;
-use leadscrew_nc::machine_state::{MachineState, Places};
-use leadscrew_nc::path::Tolerance;
 use leadscrew_nc::terms::Terms;
 use leadscrew_nc::terms::screw::ScrewMap;
 
+use super::known_terms::{constant, slope, square};
+use super::{control, correct_by};
+
 fn correct(dialect: &str, terms: Terms, program: &str) -> Result<String, String> {
-    let zero: Places = Axis::ALL.into_iter().map(|axis| (axis, 0.0)).collect();
-    let mut state = MachineState {
-        start: zero.clone(),
-        ..MachineState::default()
-    };
-    state.work_offsets.origins.insert("G54".into(), zero);
-    let tolerance = Tolerance {
-        mm: 0.002,
-        degrees: 0.002,
-    };
-    let dialect = Dialect::named(dialect).unwrap();
-    let mut corrector = Corrector::new(dialect, &state, terms, tolerance).unwrap();
-    let mut out = Vec::new();
-    for block in program.split_inclusive('\n') {
-        corrector
-            .block(block.as_bytes(), &mut out)
-            .map_err(|refusal| refusal.to_string())?;
-    }
-    Ok(String::from_utf8(out).unwrap())
+    correct_by(dialect, &control(), terms, program)
 }
 
 /// Angles that a control turns through: one for each arc in X and Y, in centre form, millimetres or inches.

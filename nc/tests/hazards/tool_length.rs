@@ -1,21 +1,14 @@
 //! Tool lengths: whose they are where G43 has no H, and where H stands alone.
 
-use leadscrew_nc::coordinates::{Axis, Coordinates};
-use leadscrew_nc::corrector::Corrector;
-use leadscrew_nc::dialect::Dialect;
-use leadscrew_nc::machine_state::{MachineState, Places, Tool};
-use leadscrew_nc::path::Tolerance;
-use leadscrew_nc::terms::Terms;
-use leadscrew_nc::terms::affine::Affine;
+use leadscrew_nc::coordinates::Axis;
+use leadscrew_nc::machine_state::Tool;
+
+use super::known_terms::slope;
+use super::{control, correct_by};
 
 /// Z grows by a thousandth, machine coordinates; tool 3 is 80 mm long, tool 4 50 mm.
 fn correct(dialect: &str, program: &str) -> Result<String, String> {
-    let zero: Places = Axis::ALL.into_iter().map(|axis| (axis, 0.0)).collect();
-    let mut state = MachineState {
-        start: zero.clone(),
-        ..MachineState::default()
-    };
-    state.work_offsets.origins.insert("G54".into(), zero);
+    let mut state = control();
     for (number, length) in [(3, 80.0), (4, 50.0)] {
         let tool = Tool {
             offset: [(Axis::Z, length)].into(),
@@ -23,24 +16,7 @@ fn correct(dialect: &str, program: &str) -> Result<String, String> {
         };
         state.tools.insert(number, tool);
     }
-    let terms = Terms::none().with(Affine::new("z", Coordinates::ZERO, Coordinates::ZERO).with(
-        Axis::Z,
-        Axis::Z,
-        1e-3,
-    ));
-    let tolerance = Tolerance {
-        mm: 0.001,
-        degrees: 0.001,
-    };
-    let dialect = Dialect::named(dialect).unwrap();
-    let mut corrector = Corrector::new(dialect, &state, terms, tolerance).unwrap();
-    let mut out = Vec::new();
-    for block in program.split_inclusive('\n') {
-        corrector
-            .block(block.as_bytes(), &mut out)
-            .map_err(|refusal| refusal.to_string())?;
-    }
-    Ok(String::from_utf8(out).unwrap())
+    correct_by(dialect, &state, slope(Axis::Z, Axis::Z, 1e-3), program)
 }
 
 #[test]
