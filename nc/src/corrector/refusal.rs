@@ -169,8 +169,8 @@ pub enum Reason {
     },
     /// A movement has no corrected path.
     Path(PathError),
-    /// The arc would begin apart from its circle.
-    ArcStart {
+    /// A spline, which is only moved as a whole, would begin apart from where it should.
+    SplineStart {
         /// By how much, mm.
         by_mm: f64,
     },

@@ -179,7 +179,7 @@ impl Task<'_> {
             .mm
             .max(2.0 * self.scale(Axis::Y).step());
         if away > by_mm {
-            return Err((self.at(), Reason::ArcStart { by_mm: away }));
+            return Err((self.at(), Reason::SplineStart { by_mm: away }));
         }
         self.single(&goals)
     }

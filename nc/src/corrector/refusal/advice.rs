@@ -33,7 +33,7 @@ impl Reason {
                 "raise the tolerance, or program the centre's path".into()
             }
             Self::NotSplit { within, .. } => within.advice().into(),
-            Self::ArcStart { .. } => "lead in with a straight movement".into(),
+            Self::SplineStart { .. } => "lead in with a straight movement".into(),
             Self::RadiusForm { .. } => "write the arc with I, J and K instead of R".into(),
             Self::Sweep { .. } => "write a short arc as a line, a full circle as two arcs".into(),
             Self::Changes { .. } => "write it as single movements, or raise the tolerance".into(),

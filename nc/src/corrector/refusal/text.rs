@@ -96,8 +96,11 @@ impl fmt::Display for Reason {
                 }
             ),
             Self::Path(error) => error.fmt(f),
-            Self::ArcStart { by_mm } => {
-                write!(f, "the arc would begin {by_mm:.4} mm beside its circle")
+            Self::SplineStart { by_mm } => {
+                write!(
+                    f,
+                    "the spline would begin {by_mm:.4} mm beside where it should"
+                )
             }
             Self::RadiusForm { off_mm } => {
                 write!(
